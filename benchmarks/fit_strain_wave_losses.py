@@ -24,7 +24,7 @@ from scipy.optimize import least_squares
 
 from pitchpoint._jax import jnp
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Engagement, Operation, cycle, engagement
@@ -125,7 +125,7 @@ def fitted(rated: Rows, other: Rows, assumed: Assumed) -> float:
 
 def drive(size: float, ratio: int, dry: float) -> Built:
     """A drive of a size, pitch diameter in tenths of an inch, with the oil of the case."""
-    case = find("csd25")[1]
+    case = find_case("csd25")[1]
     gears = {
         "family": "strain_wave",
         "teeth": [2 * ratio, 2 * ratio + 2],
@@ -169,7 +169,7 @@ def main() -> None:
     parser.add_argument("--f0", type=float, default=place["f0"][0].value, help="of a round bearing")
     parser.add_argument("--f1", type=float, default=place["f1"][0].value, help="of a round bearing")
     asked = parser.parse_args()
-    tree = find("csd25")[1]
+    tree = find_case("csd25")[1]
     study = tree["studies"][RATIO_160]["change"]
     rated = rows(tree, lambda name: name.startswith("rpm"), {})
     other = rows(tree, RATIO_160.__eq__, {k: v for k, v in study.items() if k.startswith("gears")})

@@ -24,7 +24,7 @@ import numpy as np
 import spur_motion as rival
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body, across
+from pitchpoint.dynamics.bodies import Body, radial_bearings
 from pitchpoint.dynamics.passage import passage, polynomial
 from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.transient import Transient, transient, transient_motion
@@ -62,7 +62,7 @@ def moving(own: Design, bearings: bool) -> MovingMesh:
     laws = tuple(law for law in LAWS if law.name == "xu_2007")
     sharing, rolling = LOAD_SHARING["from_stiffness"], ROLLING_RESISTANCE["none"]
     models = Models(laws, array(0), {}, sharing, rolling)
-    held = [across(mass, BEARING, BEARING_DAMPING) if bearings else None for mass in MASS]
+    held = [radial_bearings(mass, BEARING, BEARING_DAMPING) if bearings else None for mass in MASS]
     bodies = (
         Body(INERTIA[0], DRIVE * LOAD, support=held[0]),
         Body(INERTIA[1], LOAD, viscous=VISCOUS, support=held[1]),

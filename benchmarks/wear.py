@@ -30,17 +30,16 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
-from pitchpoint.gears.designs import rows
+from pitchpoint.gears.designs import select_designs
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.wear.history import Cells, WearModel, as_new, one_turn
+from pitchpoint.wear.history import Cells, WearModel, unworn_start, wear_of_turn
 from pitchpoint.wear.laws import archard_1953
-from pitchpoint.wear.march import Limit, Rate, after
-from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.march import Limit, Rate, unworn_flanks, wear_step
 
 jax.config.update("jax_enable_x64", True)
 
@@ -89,7 +88,7 @@ def drives(count: int) -> Given:
 
 def of(given: Given, number: int) -> Given:
     """One of the drives."""
-    found: Given = jax.tree.map(array, rows(given, number))
+    found: Given = jax.tree.map(array, select_designs(given, number))
     return found
 
 
@@ -103,7 +102,7 @@ def springs_of(design: Design, operation: Operation, contacts: Contacts) -> jax.
 def as_rival(given: Given) -> rival.Pair:
     """A drive as plain numbers."""
     design, operation, _ = given
-    start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
+    start, cells = unworn_start(design, operation, MODELS, parts=PARTS, count=CELLS)
     mesh, contacts = design.mesh, start.contacts
     springs = springs_of(design, operation, contacts)
     speed = np.einsum("kdpsn,d->kpn", contacts.surface, design.motion)
@@ -133,16 +132,16 @@ def alone(cells: Cells) -> Cells:
 def curve(given: Given) -> np.ndarray:
     """Depths of one drive over its life, step by step as a case does but for places under its contacts."""
     design, operation, wear = given
-    start, cells = as_new(design, operation, MODELS, parts=PARTS, count=CELLS)
+    start, cells = unworn_start(design, operation, MODELS, parts=PARTS, count=CELLS)
     cells = alone(cells)
 
     def rate(depth: np.ndarray) -> Rate:
-        return Rate.of(one_turn(design, operation, MODELS, wear, cells, start, array(depth)))
+        return Rate.of(wear_of_turn(design, operation, MODELS, wear, cells, start, array(depth)))
 
-    state = unworn(rate, cells.shape)
+    state = unworn_flanks(rate, cells.shape)
     first = state.rate.pressure
     while not state.end:
-        state = after(state, rate, Limit(TURNS), start=first, tolerance=TOLERANCE)
+        state = wear_step(state, rate, Limit(TURNS), start=first, tolerance=TOLERANCE)
     return state.depth[..., 0]
 
 
@@ -157,7 +156,7 @@ def main() -> None:
     count = asked.drives
     given = drives(count)
     pairs = [as_rival(of(given, number)) for number in range(count)]
-    _, cells = as_new(*of(given, 0)[:2], MODELS, parts=PARTS, count=CELLS)
+    _, cells = unworn_start(*of(given, 0)[:2], MODELS, parts=PARTS, count=CELLS)
     cells = alone(cells)
     limits = jnp.full(count, TURNS), jnp.full(count, jnp.inf), array(TOLERANCE)
 

@@ -16,7 +16,7 @@ from pitchpoint.cases.drive_schema import DriveCase, StageTable, TrainTable
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.planetary import PlanetaryGears
-from pitchpoint.input.tables import alternatives, quantity_of, sentences, usual_words
+from pitchpoint.input.tables import alternatives, field_quantity, key_sentences, usual_words
 from pitchpoint.materials.material_tables import DriveMaterials
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.strength import EXTREMES, STRENGTH
@@ -102,7 +102,7 @@ OF_MARKS = (
 
 
 def _of_table(title: str, model: type[BaseModel]) -> list[str]:
-    told = sentences(model)
+    told = key_sentences(model)
     rows = [_key_row(name, info, told.get(name, "")) for name, info in model.model_fields.items()]
     return _section(title, _words(model.__doc__), rows)
 
@@ -276,14 +276,14 @@ def _titled(path: str) -> str:
 
 
 def _key_row(name: str, info: FieldInfo, sentence: str) -> Row:
-    quantity = quantity_of(info)
+    quantity = field_quantity(info)
     allowed = quantity.allowed.removeprefix("allowed is ") if quantity else ""
     return f"`{name}`", sentence, _kind(info), allowed, _default(info)
 
 
 def _kind(info: FieldInfo) -> str:
     """What a value is, in words."""
-    quantity = quantity_of(info)
+    quantity = field_quantity(info)
     if quantity is not None:
         return "number" if quantity.kind == "dimensionless" else quantity.kind
     every = [*_inside(info.annotation)]

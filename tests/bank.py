@@ -19,7 +19,7 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.study_tables import Study
 from pitchpoint.programs import surroundings
 from pitchpoint.results.target_rows import TargetRow
-from pitchpoint.runs.run import Outcome, compare_case, open_result, run
+from pitchpoint.runs.run import Outcome, compare_case, open_outcomes, run_case
 
 MOST = 200
 """Results that are kept, those of earlier code among them."""
@@ -31,13 +31,13 @@ def outcomes(
     settings: Mapping[str, Any] | None = None,
     studies: Mapping[str, Study] | None = None,
 ) -> dict[str, Outcome]:
-    """Results by variant, as `run` gives them, of a shipped case or a file."""
+    """Results by variant, as `run_case` gives them, of a shipped case or a file."""
     asked = [settings or {}, {name: repr(study) for name, study in (studies or {}).items()}]
 
     def compute(folder: Path) -> None:
-        run(str(case), folder=folder, settings=settings, studies=studies)
+        run_case(str(case), folder=folder, settings=settings, studies=studies)
 
-    return open_result(_folder([_text(case), [*ANALYSES], asked], compute))
+    return open_outcomes(_folder([_text(case), [*ANALYSES], asked], compute))
 
 
 def rows(case: str) -> list[TargetRow]:
@@ -61,7 +61,7 @@ def _text(case: str | Path) -> list[str]:
 def _folder(asked: Any, compute: Callable[[Path], None]) -> Path:
     """Folder of a result, whole: another worker that computes it is waited for."""
     digest = hashlib.sha256(json.dumps([surroundings(), asked]).encode()).hexdigest()
-    bank = kept.prepared(kept.base_folder() / "bank")
+    bank = kept.prepared_folder(kept.base_folder() / "bank")
     assert bank is not None
     place = bank / digest[:40]
     with _alone(bank / f"{digest[:40]}.lock"):

@@ -21,7 +21,7 @@ from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.loading.sharing import applies
+from pitchpoint.loading.sharing import sharing_applies
 from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
@@ -242,7 +242,7 @@ def laws_for(mesh):
 
 
 def sharing_for(mesh):
-    return next(name for name in SHARING if applies(LOAD_SHARING[name], mesh))
+    return next(name for name in SHARING if sharing_applies(LOAD_SHARING[name], mesh))
 
 
 def operation_for(design, load=None):

@@ -28,17 +28,17 @@ import jax
 import numpy as np
 
 from pitchpoint import Case, cli, study
-from pitchpoint.cases.document import read
+from pitchpoint.cases.document import read_tables
 from pitchpoint.cases.keys import keys
-from pitchpoint.cases.library import names, path_of
+from pitchpoint.cases.library import case_names, case_path
 from pitchpoint.cases.wishes import WISHES
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import without_nan
-from pitchpoint.runs.run import describe
+from pitchpoint.runs.run import uncomputed_manifests
 
 ROOT = Path(__file__).parents[1]
-SEEDS = [read(path) for path in sorted(ROOT.glob("examples/*.toml"))]
-SEEDS += [read(path_of(name)) for name in names()]
+SEEDS = [read_tables(path) for path in sorted(ROOT.glob("examples/*.toml"))]
+SEEDS += [read_tables(case_path(name)) for name in case_names()]
 RECORDED = ("pair_23_61", "helical_resonance", "strain_wave", "two_stage", "planetary")
 KEYS = [
     *keys(),
@@ -149,7 +149,7 @@ class Hostile:
                 lambda: {self.text()[:40]: self.value(depth + 1) for _ in range(2)},
                 lambda: {"value": self.value(depth + 1), "status": self.text()},
             ]
-        return pick([*kinds, lambda: datetime.date(2024, 1, 31), lambda: pick(names())])()
+        return pick([*kinds, lambda: datetime.date(2024, 1, 31), lambda: pick(case_names())])()
 
     def number(self) -> float | int:
         own = self.random.uniform(-3, 3) * 10 ** self.random.uniform(-6, 6)
@@ -320,7 +320,7 @@ def handed_over(value: Any, key: str) -> str:
         lambda: Case(value),
         lambda: Case(pair).set({key: value}),
         lambda: Case(pair).set(value),
-        lambda: describe(Case(pair), settings={key: value}),
+        lambda: uncomputed_manifests(Case(pair), settings={key: value}),
         lambda: study(pair, {key: [value, value]}, how="zip", n=value, seed=value),
     )
     refused = 0
@@ -341,7 +341,9 @@ def main() -> int:
     given = parser.parse_args()
     given.keep.mkdir(parents=True, exist_ok=True)
     counts, slow = Counter[str](), (0.0, -1)
-    records = [describe(str(ROOT / "examples" / f"{name}.toml"))[0] for name in RECORDED]
+    records = [
+        uncomputed_manifests(str(ROOT / "examples" / f"{name}.toml"))[0] for name in RECORDED
+    ]
     start = time.process_time()
     while time.process_time() - start < given.seconds:
         seed = given.seed + counts.total()

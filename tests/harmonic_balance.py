@@ -9,7 +9,7 @@ from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.response import Response, respond
+from pitchpoint.dynamics.response import Response, response_from_states
 from pitchpoint.dynamics.system import System
 from pitchpoint.status import Code
 
@@ -47,7 +47,7 @@ def harmonic_balance(
     coefficients = found.reshape(orders.size, -1)
     states = _states(coefficients, course, orders, scaled.frequency * system.period)
     size = 2 * scaled.load.shape[0]
-    response: Response = respond(
+    response: Response = response_from_states(
         course,
         scaled,
         CONTACT_LAWS["linear"],

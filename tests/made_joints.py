@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.four_quadrants import both
+from pitchpoint.analyses.four_quadrants import both_signs
 from pitchpoint.runs.run import Outcome
 
 Lost = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
@@ -39,12 +39,14 @@ def made_joint(
     """
     loads, speeds = np.array([0.0, 2.0, 10.0, 30.0, 60.0]), np.array([0.0, 0.01, 0.1, 1.0, 4.0])
     degrees, ratio = np.array([20.0, 40.0, 60.0]), 1.0 / abs(RATIO)
-    torque, speed, degree = np.meshgrid(both(loads), both(speeds), degrees, indexing="ij")
+    torque, speed, degree = np.meshgrid(
+        both_signs(loads), both_signs(speeds), degrees, indexing="ij"
+    )
     way = np.where(speed < 0.0, -1.0, 1.0)
     away = lost(way * torque, abs(speed), degree)
     locked = (away < 0.0) & (speed != 0.0)
     loss = np.where(locked, np.nan, away * abs(speed))
-    held, warm = np.meshgrid(both(loads), degrees, indexing="ij")
+    held, warm = np.meshgrid(both_signs(loads), degrees, indexing="ij")
     on, off = (lost(sign * held, 0.0 * held, warm) for sign in (1.0, -1.0))
     dims, rest = (
         ("law", "output_torque", "output_speed", "temperature"),
@@ -68,8 +70,8 @@ def made_joint(
     torque_unit, speed_unit = ("N", "m/s") if slides else ("N m", "rad/s")
     axes = {
         "law": ["made"],
-        "output_torque": ("output_torque", both(loads), {"units": torque_unit}),
-        "output_speed": ("output_speed", both(speeds), {"units": speed_unit}),
+        "output_torque": ("output_torque", both_signs(loads), {"units": torque_unit}),
+        "output_speed": ("output_speed", both_signs(speeds), {"units": speed_unit}),
         "temperature": ("temperature", degrees + 273.15, {"units": "K"}),
     }
     attrs = {

@@ -16,7 +16,7 @@ from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import RUNNING
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.runs.run import Outcome, describe
+from pitchpoint.runs.run import Outcome, uncomputed_manifests
 
 TITLE = '"""*/ #\' \\ ??/ {title}\u2028 % \U0001f600'
 GEARS = sound.PAIR.replace("[23, 61]", "[12, 120]\nprofile_shift = [0.5, 0.0]")
@@ -57,7 +57,7 @@ def outcome(text: str, *others: Any) -> tuple[Ready, Outcome]:
         pieces = [analysis.compute(built, piece, silent) for piece in analysis.pieces(built)]
         parts[analysis.name] = analysis.joined(built, pieces)
         parts[analysis.name].attrs["fingerprint"] = "0123456789abcdef"
-    (manifest,) = describe(made.tree)
+    (manifest,) = uncomputed_manifests(made.tree)
     return built, Outcome(manifest | {"lacks": {}, "parts": [*parts], "finished": True}, parts)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from pitchpoint.efficiency.summary import of_stacks, stacks
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.rated_pair import bare
+from pitchpoint.gears.rated_pair import bare_pair
 from pitchpoint.materials.solids import Solid
 from pitchpoint.strength.limits import Constants
 from pitchpoint.strength.load_factors import CLASSES
@@ -39,7 +39,7 @@ def base_pair() -> CylindricalPair:
         centre_distance=25e-3,
         tip_alteration=(0.0, 0.0),
     )
-    return bare(pair)
+    return bare_pair(pair)
 
 
 def with_circles(

@@ -16,7 +16,7 @@ from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period, phase_sense
-from pitchpoint.gears.pairs import way
+from pitchpoint.gears.pairs import way_of_pairs
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
@@ -180,7 +180,7 @@ def drawn_teeth(mesh: Mesh, family: Family, driver: str, members: list[str]) -> 
         title="teeth",
     )
     motion = nominal_motion(mesh, *mesh_ends(mesh, driver))
-    teeth["points"].attrs.update(way(mesh).attributes(members))
+    teeth["points"].attrs.update(way_of_pairs(mesh).attributes(members))
     inputs = {
         "operation.torque": 5.0,
         "operation.speed": 60.0 * pi,

@@ -8,12 +8,12 @@ import xarray as xr
 
 from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.liu_xiong_torus.motion import course
+from pitchpoint.published.liu_xiong_torus.motion import torus_motion
 
-NAME, TREE = find("liu_xiong_torus")
+NAME, TREE = find_case("liu_xiong_torus")
 
 
 @cache
@@ -51,9 +51,9 @@ def driven(study, position, pair):
 
     def kept(drive, turn):
         found[float(drive.pointed)] = drive, turn
-        return course(drive, turn)
+        return torus_motion(drive, turn)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(printed, "course", kept)
+        patch.setattr(printed, "torus_motion", kept)
         readings_of([built], 1)
     return found[float(pair == "torus")]

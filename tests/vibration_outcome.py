@@ -12,7 +12,7 @@ from pitchpoint.gears.bodies import drawing
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.pairs import way
+from pitchpoint.gears.pairs import way_of_pairs
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 
@@ -37,7 +37,7 @@ def teeth_of(pair: CylindricalPair) -> xr.Dataset:
         dict(FAMILY.coordinates),
         title="teeth",
     )
-    teeth["points"].attrs.update(way(pair).attributes(["gear 1", "gear 2"]))
+    teeth["points"].attrs.update(way_of_pairs(pair).attributes(["gear 1", "gear 2"]))
     return teeth
 
 

@@ -14,7 +14,7 @@ from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case
-from pitchpoint.wear.history import Cells, DriverTurn, Start, WearModel, as_new, one_turn
+from pitchpoint.wear.history import Cells, DriverTurn, Start, WearModel, unworn_start, wear_of_turn
 from pitchpoint.wear.laws import archard_1953
 
 K = 1e-16
@@ -32,7 +32,7 @@ def pair(name: str = "from_stiffness") -> Built:
 
 def begun(built: Built, cells: int = CELLS) -> tuple[Start, Cells]:
     given = built.design, built.operation, built.models[0]
-    return as_new(*given, parts=PARTS, count=cells)
+    return unworn_start(*given, parts=PARTS, count=cells)
 
 
 def turn(
@@ -42,7 +42,7 @@ def turn(
     start, grid = begun(built, cells)
     gone = jnp.zeros(grid.shape) if depth is None else array(depth)
     given = built.design, built.operation, built.models[0], WEAR
-    return jax.device_get(one_turn(*given, grid, start, gone)), grid
+    return jax.device_get(wear_of_turn(*given, grid, start, gone)), grid
 
 
 # ---- closed forms

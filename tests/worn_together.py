@@ -12,7 +12,7 @@ from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.errors import InputError
 from pitchpoint.programs import fast_program
 from pitchpoint.wear.gradients import Inputs
-from pitchpoint.wear.history import Cells, DriverTurn, Start, reached, travelled, turn_alone
+from pitchpoint.wear.history import Cells, DriverTurn, Start, reached_ends, travelled, turn_alone
 from pitchpoint.wear.march import FIRST
 
 __all__ = ["AT_ONCE", "Marches", "worn_together"]
@@ -57,7 +57,7 @@ def worn_together(
 ) -> Marches:
     """Flanks of many drives after so many turns, or at a depth if that comes first.
 
-    The march is that of `march.after`: the same method, the same measure of its error.
+    The march is that of `march.wear_step`: the same method, the same measure of its error.
 
     Args:
         inputs: designs, operating points and how material goes, each array with an axis of drives in front.
@@ -110,7 +110,7 @@ def _worn(
     design, operation, wear = inputs
     start = Start.of(design, models, parts)
     share = models.share(design, start.contacts, operation.load, start.body, start.teeth)
-    flank, across, span = reached(*travelled(design, operation, models, start.engaged(share)))
+    flank, across, span = reached_ends(*travelled(design, operation, models, start.engaged(share)))
     own = dataclasses.replace(cells, flank=flank, across=across, span=span)
     start = start.on(own)
 

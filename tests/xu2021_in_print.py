@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.published.xu2021.printed import (
     BETA,
@@ -14,7 +14,7 @@ from pitchpoint.published.xu2021.printed import (
     mesh_point_speed,
 )
 
-NAME, TREE = find("xu2021")
+NAME, TREE = find_case("xu2021")
 VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}
 RADII = (0.1 / 2.0 * np.cos(np.pi / 9.0), 0.101 / 2.0 * np.cos(np.pi / 9.0))
 END = np.pi / 8.0

@@ -7,10 +7,10 @@ import xarray as xr
 
 from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 
-NAME, TREE = find("zhao2022")
+NAME, TREE = find_case("zhao2022")
 VARIANTS = {name: Variant(TREE, NAME, name) for name in ("as_published", "physical")}
 STEP = np.deg2rad(1.8)
 

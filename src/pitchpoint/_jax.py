@@ -54,7 +54,7 @@ except ImportError:  # JAX 0.6
     from jax.experimental import enable_x64  # type: ignore[attr-defined,no-redef]
 
 from pitchpoint.errors import PitchpointError  # noqa: E402
-from pitchpoint.kept import base_folder, prepared  # noqa: E402
+from pitchpoint.kept import base_folder, prepared_folder  # noqa: E402
 
 __all__ = [
     "array",
@@ -147,7 +147,7 @@ def _keeps_programs() -> bool:
 def _enable_cache() -> Path | None:
     """The folder, if only the user can write to it; for JAX too where it has none."""
     try:
-        folder = prepared(cache_folder())
+        folder = prepared_folder(cache_folder())
     except RuntimeError:
         return None
     if folder is None:

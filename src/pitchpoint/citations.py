@@ -10,7 +10,7 @@ from importlib import resources
 from pitchpoint.errors import InputError
 from pitchpoint.registry import unknown_name
 
-__all__ = ["Reference", "available", "bibtex", "cite", "of_program", "reference"]
+__all__ = ["Reference", "available", "bibtex", "citation_text", "of_program", "reference"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,14 +89,14 @@ def reference(key: str) -> Reference:
     return _references()[key]
 
 
-def cite(key: str) -> str:
+def citation_text(key: str) -> str:
     """Return a reference as one line of plain text.
 
     Raises:
         InputError: there is no such key.
 
     Example:
-        >>> cite("johnson_1985")
+        >>> citation_text("johnson_1985")
         'Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press.'
     """
     entry = reference(key)

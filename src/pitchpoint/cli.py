@@ -39,9 +39,9 @@ _SWEEP = re.compile(r"([^=]{0,500})=([^:]*):([^:]*):\s*([1-9][0-9]{0,4}|100000)\
 
 def _cases_from(incomplete: str) -> list[str]:
     """Shipped cases, TOML files and manifests that begin so, for the completion of a shell."""
-    from pitchpoint.cases.library import names
+    from pitchpoint.cases.library import case_names
 
-    shipped = [name for name in names() if name.startswith(incomplete)]
+    shipped = [name for name in case_names() if name.startswith(incomplete)]
     found = sorted(glob(f"{glob_escape(incomplete)}*"))
     files = [path for path in found if path.endswith((".toml", "manifest.json"))]
     return [*shipped, *files, *(f"{path}/" for path in found if Path(path).is_dir())]
@@ -50,10 +50,10 @@ def _cases_from(incomplete: str) -> list[str]:
 def _variants_from(context: typer.Context, incomplete: str) -> list[str]:
     """Variants of the case that stands before on the line."""
     from pitchpoint.cases.document import variants
-    from pitchpoint.cases.library import find
+    from pitchpoint.cases.library import find_case
 
     try:
-        known = variants(find(next(iter(context.args), ""))[1])
+        known = variants(find_case(next(iter(context.args), ""))[1])
     except PitchpointError:
         return []
     return [name for name in known if name.startswith(incomplete)]
@@ -273,9 +273,11 @@ def options(
 @app.command()
 def cases(json_: AsJson = False) -> None:
     """List the cases that ship with the package."""
-    from pitchpoint.cases.library import find, names
+    from pitchpoint.cases.library import case_names, find_case
 
-    rows = [{"case": name, "title": str(find(name)[1].get("title", ""))} for name in names()]
+    rows = [
+        {"case": name, "title": str(find_case(name)[1].get("title", ""))} for name in case_names()
+    ]
     _show(rows, json_, ("case", "title"))
 
 
@@ -284,18 +286,18 @@ def show(
     case: CaseName, variant: Variants = None, set_: Settings = None, json_: AsJson = False
 ) -> None:
     """Show the inputs of a case as resolved, and its issues."""
-    from pitchpoint.runs.run import describe
+    from pitchpoint.runs.run import uncomputed_manifests
 
-    manifests = describe(case, only=variant or [], settings=_settings(set_ or []))
+    manifests = uncomputed_manifests(case, only=variant or [], settings=_settings(set_ or []))
     if json_:
         _emit(manifests)
         return
-    from pitchpoint.views.inputs import input_rows
+    from pitchpoint.views.inputs import printed_input_rows
 
     for number, manifest in enumerate(manifests):
         _heading(manifest, number)
         columns = ("table", "key", "value", "status", "where", "note")
-        _table(input_rows(manifest), columns)
+        _table(printed_input_rows(manifest), columns)
         _warn(manifest["warnings"])
     for issue in manifests[0]["issues"]:
         _console().print(f"- {_plain(issue['where'])}: {_plain(issue['issue'])}. ", end="")
@@ -305,10 +307,10 @@ def show(
 @app.command()
 def check(case: CaseName, variant: Variants = None, set_: Settings = None) -> None:
     """Tell what is wrong with a case, its teeth do not bear, or warns, before it is computed."""
-    from pitchpoint.doubts import apart
-    from pitchpoint.runs.check import check as checked
+    from pitchpoint.doubts import ranked_doubts
+    from pitchpoint.runs.check import check_case
 
-    told = apart(checked(case, variant or [], _settings(set_ or [])))
+    told = ranked_doubts(check_case(case, variant or [], _settings(set_ or [])))
     _failing(told["implausible"])
     if not told["implausible"]:
         typer.echo("ok")
@@ -330,14 +332,14 @@ def run(
     json_: AsJson = False,
 ) -> None:
     """Compute a case: the answer here, report.html in a folder."""
-    from pitchpoint.cases.record import default_folder, owner
-    from pitchpoint.runs.run import run as compute
+    from pitchpoint.cases.record import default_folder, folder_record
+    from pitchpoint.runs.run import run_case as compute
 
     settings, studies = _settings(set_ or []), _studies(sweep or [])
     if units:
         settings["output.units"] = _units(units)
     folder = output or default_folder(case, Path("results"), settings)
-    before = None if overwrite else owner(folder)
+    before = None if overwrite else folder_record(folder)
     with _progress(folder) as progress:
         outcomes = compute(
             case,
@@ -350,7 +352,7 @@ def run(
         )
         progress.part("", "report", False)
         _write_report(outcomes, folder)
-    if before and (words := before.replaced_by(owner(folder))):
+    if before and (words := before.replaced_by(folder_record(folder))):
         typer.echo(visible(f"{folder} held a run {words}; this one has replaced it"), err=True)
     if json_:
         _emit({name: _figures(outcome) for name, outcome in outcomes.items()})
@@ -415,7 +417,7 @@ def explore(
     It opens offline. The page holds figures that were computed beforehand, and interpolates between them.
     """
     from pitchpoint.cases.record import default_folder
-    from pitchpoint.results.store import demand_room, make_folder
+    from pitchpoint.results.store import demand_writable_folder, make_folder
     from pitchpoint.runs.explore import explore as compute
     from pitchpoint.views.explorer import Reader, write_explorer
 
@@ -425,7 +427,7 @@ def explore(
     path = output or default_folder(case, Path("results"), settings) / "explorer.html"
     if path.suffix.lower() not in (".html", ".htm"):
         raise InputError("is no name of a page; give one that ends in .html", file=str(path))
-    demand_room(path.parent)
+    demand_writable_folder(path.parent)
     read = Reader()
     with _progress(None) as progress:
         found = compute(
@@ -725,7 +727,7 @@ def compare(
     Several designs: main results with their differences, inputs that differ, and a report with their
     curves on the same axes. One published case: exit status 1 when a row misses without a known cause.
     """
-    from pitchpoint.runs.designs import wanted
+    from pitchpoint.runs.designs import resolved_reference
 
     _demand_names(designs)
     if len(designs) > 1:
@@ -742,7 +744,7 @@ def compare(
         raise InputError("goes with several designs; print has its own units", key="--units")
     if full:
         raise InputError("goes with several designs; a print is told in full", key="--full")
-    one = wanted(designs[0])
+    one = resolved_reference(designs[0])
     _compare_with_print(one.case, variant or one.variant, json_)
 
 
@@ -937,14 +939,14 @@ def export(
     the driver at any torque and speed of the output; it is of a run with --set loss_map.quadrants=4, as are
     joints for simulators, which go into a folder of their own each, with a table of what is lost.
     """
-    from pitchpoint.runs.run import open_result
+    from pitchpoint.runs.run import open_outcomes
 
     asked = {"csv": csv, "mat": mat, "json": json_, "xlsx": xlsx, "evaluator": evaluator}
     formats = [name for name, wanted in asked.items() if wanted]
     joints = {"mujoco": mujoco, "urdf": urdf, "ros2_control": ros2_control, "isaac": isaac}
     joints |= {"modelica": modelica, "fmu": fmu, "fmu_joint": fmu_joint, "simscape": simscape}
     targets = [name for name, wanted in joints.items() if wanted]
-    outcomes, folder = open_result(result), output or Path(result) / "export"
+    outcomes, folder = open_outcomes(result), output or Path(result) / "export"
     if formats or not targets:
         from pitchpoint.exports.files import export as exported
 
@@ -1129,9 +1131,9 @@ def schema(
 
 def _pages_from(incomplete: str) -> list[str]:
     """Pages that begin so."""
-    from pitchpoint.pages import names
+    from pitchpoint.pages import page_names
 
-    return [name for name in names() if name.startswith(incomplete)]
+    return [name for name in page_names() if name.startswith(incomplete)]
 
 
 @app.command()
@@ -1157,18 +1159,18 @@ def docs(
         _show_found(found, json_)
     elif not words:
         _show(
-            [{"page": one, "title": pages.title(one)} for one in pages.names()],
+            [{"page": one, "title": pages.title(one)} for one in pages.page_names()],
             json_,
             ("page", "title"),
         )
     elif json_:
-        _emit({"page": page, "text": pages.page(page)})
+        _emit({"page": page, "text": pages.page_text(page)})
     elif sys.stdout.isatty():
         from rich.markdown import Markdown
 
-        _console().print(Markdown(pages.page(page), hyperlinks=False))
+        _console().print(Markdown(pages.page_text(page), hyperlinks=False))
     else:
-        typer.echo(pages.page(page), nl=False)
+        typer.echo(pages.page_text(page), nl=False)
 
 
 def _show_found(found: list[dict[str, str]], as_json: bool) -> None:
@@ -1590,9 +1592,9 @@ def _place(number: int, of: int) -> str:
 
 
 def _figures(outcome: "Outcome") -> dict[str, Any]:
-    from pitchpoint.runs.catalogue import figures
+    from pitchpoint.runs.catalogue import figures_by_law
 
-    return figures(outcome)
+    return figures_by_law(outcome)
 
 
 def _summary(outcome: "Outcome", number: int) -> None:
@@ -1630,17 +1632,17 @@ def _print(printed: "Printed") -> None:
 
 
 def _rows(rows: "list[TargetRow]") -> None:
-    from pitchpoint.views.show import number
+    from pitchpoint.views.show import number_text
 
     shown = [
         {
             "quantity": row.quantity,
             "verdict": row.verdict,
             "printed": f"{row.bound}{row.printed:g} {row.unit if row.unit != '1' else ''}",
-            "computed": "" if row.computed is None else number(row.computed),
+            "computed": "" if row.computed is None else number_text(row.computed),
             "deviation": ""
             if row.deviation is None
-            else f"{'+' * (row.deviation > 0.0)}{number(row.deviation, 2)}",
+            else f"{'+' * (row.deviation > 0.0)}{number_text(row.deviation, 2)}",
             "tolerance": "" if row.bound else f"{row.tolerance:g}",
             "kind": row.kind,
             "place": row.where,
@@ -1654,10 +1656,10 @@ def _rows(rows: "list[TargetRow]") -> None:
 
 
 def _verdicts(rows: "list[TargetRow]", of: str = "") -> None:
-    from pitchpoint.results.target_rows import counts, in_words
+    from pitchpoint.results.target_rows import counts, verdict_sentence
 
     if rows:
-        _console().print(_plain(f"{of}{in_words(rows)}"))
+        _console().print(_plain(f"{of}{verdict_sentence(rows)}"))
     for kind, verdicts in counts(rows).items():
         told = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
         _console().print(_plain(f"{of}{kind}: {told}"))

@@ -25,7 +25,6 @@ __all__ = [
     "Check",
     "Checks",
     "Doubt",
-    "apart",
     "as_doubt",
     "concerns",
     "doubts_of",
@@ -35,6 +34,7 @@ __all__ = [
     "measured",
     "moves",
     "of_designs",
+    "ranked_doubts",
     "reworded",
     "stored",
     "without_repeats",
@@ -310,7 +310,7 @@ def of_designs(sentence: str, names: str) -> Doubt:
     return reworded(sentence, named)
 
 
-def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
+def ranked_doubts(sentences: Iterable[str]) -> dict[str, list[str]]:
     """Sentences on what cannot be, and all other warnings that are felt, each once and the worst first.
 
     Sentences that differ by their stage or gear alone become one.
@@ -319,7 +319,7 @@ def apart(sentences: Iterable[str]) -> dict[str, list[str]]:
         >>> from pitchpoint.doubts import Doubt, fails
         >>> grid = Doubt("the grid is off by 20 %.", moves=0.2)
         >>> tips = [f"the teeth of gear {number} are pointed." for number in (1, 2)]
-        >>> apart([*tips, fails("teeth melt."), grid, Doubt("a trifle.", moves=1e-4)])["warnings"]
+        >>> ranked_doubts([*tips, fails("teeth melt."), grid, Doubt("a trifle.", moves=1e-4)])["warnings"]
         ['the grid is off by 20 %.', 'the teeth of gear 1 (gear 2 alike) are pointed.']
     """
     every = without_repeats(sentences)

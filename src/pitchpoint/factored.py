@@ -15,7 +15,16 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
 
-__all__ = ["Arrays", "Factored", "Numbers", "as_array", "log", "product", "root", "scaled"]
+__all__ = [
+    "Arrays",
+    "Factored",
+    "Numbers",
+    "factored_product",
+    "log",
+    "product_array",
+    "scaled",
+    "square_root",
+]
 
 
 class Factored(eqx.Module):
@@ -94,7 +103,7 @@ class Factored(eqx.Module):
 
 def _on_value(name: str) -> Any:
     def operator(self: Factored, *others: Any) -> Any:
-        return getattr(self.value, name)(*map(as_array, others))
+        return getattr(self.value, name)(*map(product_array, others))
 
     return operator
 
@@ -119,12 +128,12 @@ def scaled(value: Factored | ArrayLike, by: float) -> Any:
     return value * by if isinstance(value, Factored) else jnp.asarray(value) * by
 
 
-def product(*factors: ArrayLike) -> Any:
+def factored_product(*factors: ArrayLike) -> Any:
     """Product that keeps its factors, for whoever takes an array."""
     return Factored(factors)
 
 
-def as_array(value: Any) -> Any:
+def product_array(value: Any) -> Any:
     """The value itself, or the array that a product stands for."""
     return value.value if isinstance(value, Factored) else value
 
@@ -146,8 +155,8 @@ def _log(value: Numbers) -> Array:
     return jnp.log(jnp.where(value > tiny, value, tiny))
 
 
-def root(square: Float[Numbers, "..."]) -> Any:
+def square_root(square: Float[Numbers, "..."]) -> Any:
     """Square root with a zero gradient at zero instead of an infinite one."""
     if isinstance(square, Factored):
-        return Factored(tuple(map(root, square.merged)))
+        return Factored(tuple(map(square_root, square.merged)))
     return jnp.where(square > 0.0, jnp.sqrt(jnp.where(square > 0.0, square, 1.0)), 0.0)

@@ -7,7 +7,7 @@ import stat
 import tempfile
 from pathlib import Path
 
-__all__ = ["base_folder", "prepared", "private", "read", "write"]
+__all__ = ["base_folder", "is_private", "prepared_folder", "read_kept", "write_kept"]
 
 _LOG = logging.getLogger("pitchpoint")
 _DIGEST = hashlib.sha256().digest_size
@@ -22,11 +22,11 @@ def base_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "pitchpoint"
 
 
-def prepared(folder: Path) -> Path | None:
+def prepared_folder(folder: Path) -> Path | None:
     """The folder, made if need be; None where it cannot be, or where others can write to it."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        if private(folder):
+        if is_private(folder):
             return folder
     except OSError:
         return None
@@ -36,7 +36,7 @@ def prepared(folder: Path) -> Path | None:
     return None
 
 
-def private(folder: Path) -> bool:
+def is_private(folder: Path) -> bool:
     """True if nobody but the user and the administrator can put files there."""
     if not hasattr(os, "geteuid"):
         return True  # Windows keeps a user's folders to the user
@@ -51,8 +51,8 @@ def _open_to_all(folder: Path) -> bool:
     return bool(mode & stat.S_IWOTH) and not mode & stat.S_ISVTX
 
 
-def read(path: Path) -> bytes | None:
-    """What `write` kept; None if there is none, or it is damaged."""
+def read_kept(path: Path) -> bytes | None:
+    """What `write_kept` kept; None if there is none, or it is damaged."""
     try:
         kept = path.read_bytes()
     except OSError:
@@ -61,7 +61,7 @@ def read(path: Path) -> bytes | None:
     return content if hashlib.sha256(content).digest() == digest else None
 
 
-def write(path: Path, content: bytes) -> None:
+def write_kept(path: Path, content: bytes) -> None:
     """Keep a file with its digest, whole or not at all; where that fails it costs time, nothing else."""
     try:
         path.parent.mkdir(mode=0o700, exist_ok=True)

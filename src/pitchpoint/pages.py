@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from pitchpoint.errors import InputError, shorten
-from pitchpoint.registry import alike, known_as
+from pitchpoint.registry import known_as, similar_names
 
-__all__ = ["is_page", "names", "page", "search_pages", "title"]
+__all__ = ["is_page", "page_names", "page_text", "search_pages", "title"]
 
 _PACKAGE = Path(__file__).parent
 _FOLDER = next(
@@ -24,7 +24,7 @@ MOST = 10
 _HEAD = re.compile(r"\A---\n.*?\n---\n+", re.DOTALL)
 
 
-def names() -> list[str]:
+def page_names() -> list[str]:
     """Names of the pages, by folder."""
     if _FOLDER is None:
         return []
@@ -33,7 +33,7 @@ def names() -> list[str]:
     return [name for name in every if not name.startswith(_FOR_THE_SITE)]
 
 
-def page(name: str) -> str:
+def page_text(name: str) -> str:
     """Text of a page.
 
     Args:
@@ -45,20 +45,20 @@ def page(name: str) -> str:
     chosen = _chosen(name)
     if chosen is None or _FOLDER is None:
         words = "" if "/" in name else ", nor is it on one"
-        near = alike(name.removesuffix(".md"), names())
+        near = similar_names(name.removesuffix(".md"), page_names())
         advice = f"; did you mean {' or '.join(near)}?" if near else ", which pitchpoint docs lists"
         raise InputError(f"'{shorten(name)}' is no page of the documentation{words}{advice}")
     return _HEAD.sub("", (_FOLDER / f"{chosen}.md").read_text("utf-8"))
 
 
 def is_page(name: str) -> bool:
-    """True for the name of a page, see `page`."""
+    """True for the name of a page, see `page_text`."""
     return _chosen(name) is not None
 
 
 def _chosen(name: str) -> str | None:
     """Whole name of a page; None for that of none, or of several."""
-    wanted, every = name.removesuffix(".md"), names()
+    wanted, every = name.removesuffix(".md"), page_names()
     ending = [page_name for page_name in every if page_name.rpartition("/")[2] == wanted]
     return known_as(wanted, every) or (ending[0] if len(ending) == 1 else None)
 
@@ -81,10 +81,10 @@ def search_pages(words: str) -> list[dict[str, str]]:
         return []
     hits = sorted(
         (_rank(line, wanted[0]), name, _plain(line))
-        for name in names()
-        for line in page(name).splitlines()
+        for name in page_names()
+        for line in page_text(name).splitlines()
         if _has(line, wanted)
-    ) or [(0, name, title(name)) for name in names() if _has(page(name), wanted)]
+    ) or [(0, name, title(name)) for name in page_names() if _has(page_text(name), wanted)]
     lines_of_page: Counter[str] = Counter()
     shown_lines: list[dict[str, str]] = []
     for _, name, line in hits:
@@ -96,7 +96,7 @@ def search_pages(words: str) -> list[dict[str, str]]:
 
 def _with_most(wanted: Iterable[str]) -> list[dict[str, str]]:
     """Pages with most of some words, those that name these most often first; none without any."""
-    texts = {name: page(name).lower() for name in names()}
+    texts = {name: page_text(name).lower() for name in page_names()}
     counts = {name: {word: text.count(word) for word in wanted} for name, text in texts.items()}
     most = max(
         (sum(map(bool, count_of_word.values())) for count_of_word in counts.values()), default=0
@@ -136,4 +136,4 @@ def _plain(line: str) -> str:
 
 def title(name: str) -> str:
     """Title of a page."""
-    return next(line[2:] for line in page(name).splitlines() if line.startswith("# "))
+    return next(line[2:] for line in page_text(name).splitlines() if line.startswith("# "))

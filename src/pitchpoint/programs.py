@@ -33,7 +33,7 @@ import numpy as np
 from jax import export
 
 from pitchpoint._jax import demand_double, jax, kept_folder
-from pitchpoint.kept import read, write
+from pitchpoint.kept import read_kept, write_kept
 from pitchpoint.reach import Sources
 
 __all__ = [
@@ -166,7 +166,7 @@ class Program(Generic[P, R]):
             if stored is None:
                 stored = self._exported(flat, traced, arrays)
                 outline, blob = stored
-                write(path, json.dumps(outline).encode() + b"\n" + blob)
+                write_kept(path, json.dumps(outline).encode() + b"\n" + blob)
                 _make_room(path.parent)
             outline, blob = stored
             exported = export.deserialize(bytearray(blob))
@@ -433,7 +433,7 @@ def _make_room(folder: Path) -> None:
 
 def _read(path: Path) -> tuple[Any, bytes] | None:
     """Outline and portable form of a program that was kept; None if there is none, or it is damaged."""
-    body = read(path)
+    body = read_kept(path)
     if body is None:
         return None
     with suppress(OSError):

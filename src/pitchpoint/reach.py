@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath
 from types import CodeType
 from typing import NamedTuple
 
-from pitchpoint.kept import read, write
+from pitchpoint.kept import read_kept, write_kept
 
 __all__ = ["Sources"]
 
@@ -98,7 +98,7 @@ class Sources:
     @cached_property
     def _known(self) -> dict[str, _Source]:
         """What is known of files; an earlier process may have found it."""
-        content = None if self._path is None else read(self._path)
+        content = None if self._path is None else read_kept(self._path)
         return {file: _Source(*record) for file, record in json.loads(content or b"{}").items()}
 
     def _source(self, file: str) -> _Source:
@@ -130,7 +130,7 @@ class Sources:
 
     def _keep(self) -> None:
         if self._fresh and self._path is not None:
-            write(self._path, json.dumps(self._known).encode())
+            write_kept(self._path, json.dumps(self._known).encode())
         self._fresh = False
 
 

@@ -15,13 +15,13 @@ from pitchpoint.errors import InputError, shorten
 __all__ = [
     "Deferred",
     "Registry",
-    "alike",
     "code_at",
     "enumerated",
     "known_as",
     "letters",
     "listed",
     "nearest",
+    "similar_names",
     "unknown_name",
 ]
 
@@ -156,7 +156,7 @@ def known_as(name: str, known: Collection[str]) -> str | None:
 def nearest(name: str, known: Iterable[str]) -> str:
     """End of a sentence that offers the known names nearest to a wrong one, or all of them."""
     names = [*known]
-    close = alike(name, names)
+    close = similar_names(name, names)
     if close:
         return f"; did you mean {' or '.join(close)}?"
     return f"; known are {listed(names)}" if names else "; there are none"
@@ -181,7 +181,7 @@ _OTHERWISE = {
 """What things are called elsewhere, by letters and figures; steels by their class in ISO 6336-5."""
 
 
-def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
+def similar_names(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
     """At most three known names spelled like another, whatever its case, spaces and hyphens.
 
     A grade, "VG 220", is a part of up to six names, as is that at the end of a maker's name.
@@ -192,9 +192,9 @@ def alike(name: str, known: Iterable[str], likeness: float = 0.6) -> list[str]:
         likeness: least part of both names that has to agree; 1 for the same letters.
 
     Example:
-        >>> alike("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
+        >>> similar_names("PAO VG 150", ["pao-vg-150", "pao-vg-100"])
         ['pao-vg-150']
-        >>> alike("Shell Omala S2 150", ["pao-vg-150", "pao-vg-100"])
+        >>> similar_names("Shell Omala S2 150", ["pao-vg-150", "pao-vg-100"])
         ['pao-vg-150']
     """
     plain = {letters(spelling): spelling for spelling in known}

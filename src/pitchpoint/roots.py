@@ -7,7 +7,7 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 
-__all__ = ["TOLERANCE", "hypot", "quotient", "root", "third_order_step"]
+__all__ = ["TOLERANCE", "find_root", "hypot", "quotient", "third_order_step"]
 
 TOLERANCE = 1e-12
 """Largest residual at which the iteration stops; a last step follows."""
@@ -31,7 +31,7 @@ def hypot(x: Each | float, y: Each) -> Each:
     return jnp.sqrt(x**2 + y**2)
 
 
-def root(
+def find_root(
     function: Callable[[Each], Each],
     guess: Each,
     most: Each | float,

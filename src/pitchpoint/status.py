@@ -10,7 +10,15 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint.doubts import WITHHELD, Doubt
 
-__all__ = ["DIRECT", "Code", "Status", "locked_or_lost", "summary", "told", "withheld"]
+__all__ = [
+    "DIRECT",
+    "Code",
+    "Status",
+    "locked_or_lost",
+    "solve_summary",
+    "status_summary",
+    "withheld",
+]
 
 
 class Code(IntEnum):
@@ -105,7 +113,7 @@ DIRECT: dict[str, Any] = {
 """What stands in a dataset for which nothing was solved."""
 
 
-def summary(status: Status) -> dict[str, Any]:
+def status_summary(status: Status) -> dict[str, Any]:
     """Status of many solves as plain numbers and words, for a dataset.
 
     Args:
@@ -113,18 +121,20 @@ def summary(status: Status) -> dict[str, Any]:
 
     Example:
         >>> import jax.numpy as jnp
-        >>> from pitchpoint.status import Code, Status, summary
+        >>> from pitchpoint.status import Code, Status, status_summary
         >>> codes = jnp.array([Code.SOLVED, Code.SOLVED, Code.LOCKED])
-        >>> told = summary(Status(codes, jnp.array([1e-14, 3e-14, 0.2]), jnp.array(4)))
+        >>> told = status_summary(Status(codes, jnp.array([1e-14, 3e-14, 0.2]), jnp.array(4)))
         >>> told["code"], told["iterations"]
         (7, 4)
         >>> told["sentence"]
         '2 of 3: a solution was found; 1 of 3: friction locks the mesh: no force moves the load'
     """
-    return told(np.asarray(status.code), np.asarray(status.residual), np.asarray(status.iterations))
+    return solve_summary(
+        np.asarray(status.code), np.asarray(status.residual), np.asarray(status.iterations)
+    )
 
 
-def told(
+def solve_summary(
     code: np.ndarray, residual: np.ndarray | None = None, iterations: np.ndarray | None = None
 ) -> dict[str, Any]:
     """The worst code, how many solves ended how, and the largest residual of those that are solved.

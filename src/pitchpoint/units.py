@@ -24,7 +24,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, NoReturn, overload
 
 from pitchpoint.errors import InputError
-from pitchpoint.kept import base_folder, prepared, read, write
+from pitchpoint.kept import base_folder, prepared_folder, read_kept, write_kept
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "UnitError",
+    "allows_plain_number",
     "comma_readings",
     "convert",
     "degrees_celsius",
@@ -43,7 +44,6 @@ __all__ = [
     "kinds",
     "noun",
     "parse",
-    "plain",
     "si_unit",
     "spelled",
     "units_of",
@@ -449,11 +449,11 @@ def noun(kind: str) -> str:
     return _kind(kind).noun
 
 
-def plain(kind: str) -> bool:
+def allows_plain_number(kind: str) -> bool:
     """Return True for a kind whose numbers may stand without a unit.
 
     Example:
-        >>> plain("dimensionless"), plain("length")
+        >>> allows_plain_number("dimensionless"), allows_plain_number("length")
         (True, False)
     """
     return "" in _kind(kind).units
@@ -815,18 +815,18 @@ def _every_factor() -> Mapping[str, Mapping[str, Sequence[str]]]:
     listed = {kind: dict(quantity_kind.units) for kind, quantity_kind in _KINDS.items()}
     state = hashlib.sha256(json.dumps([version("pint"), listed]).encode()).hexdigest()[:16]
     try:
-        folder = prepared(base_folder() / "units")
+        folder = prepared_folder(base_folder() / "units")
     except RuntimeError:
         folder = None
     path = None if folder is None else folder / state
-    stored = None if path is None else read(path)
+    stored = None if path is None else read_kept(path)
     if stored is not None:
         return dict(json.loads(stored))
     factors = {
         kind: {unit: _by_pint(kind, unit) for unit in units} for kind, units in listed.items()
     }
     if path is not None:
-        write(path, json.dumps(factors).encode())
+        write_kept(path, json.dumps(factors).encode())
     return factors
 
 

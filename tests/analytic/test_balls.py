@@ -10,7 +10,11 @@ from scipy.optimize import brentq, minimize
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears import on_balls
 from pitchpoint.gears.on_balls import OnBalls, ball_force, ball_stiffness, seated
-from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing, palmgren_1959
+from pitchpoint.gears.strain_wave.ball_bearing import (
+    Balls,
+    ball_bearing,
+    ball_stiffness_palmgren_1959,
+)
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing, RingLoads
 from pitchpoint.gears.strain_wave.ring_compliance import ring_modes
 from pitchpoint.loading import equilibrium as loading
@@ -19,7 +23,7 @@ from pitchpoint.materials.solids import Solid
 from pitchpoint.status import Code
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
-POINT = palmgren_1959(5e-3)
+POINT = ball_stiffness_palmgren_1959(5e-3)
 RNG = np.random.default_rng(7)
 LANES, COUNT = 5, 4
 

@@ -8,9 +8,9 @@ from scipy.integrate import quad
 from scipy.optimize import nnls, root
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.gears.nominal_motion import mesh_ends
-from pitchpoint.gears.on_balls import ball_force, opened
+from pitchpoint.gears.on_balls import ball_force, separation_on_balls
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, on_balls
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.flexible_ring import RingLoads
@@ -226,7 +226,7 @@ _force = jax.jit(ball_force)
 def test_without_play_the_teeth_stand_as_in_the_nominal_wave():
     _, contacts, body = held(0.0)
     np.testing.assert_array_equal(body.shift, 0.0)
-    np.testing.assert_array_equal(opened(contacts.gap, body), contacts.gap)
+    np.testing.assert_array_equal(separation_on_balls(contacts.gap, body), contacts.gap)
 
 
 def test_teeth_sit_back_by_what_the_balls_push_less():
@@ -259,7 +259,7 @@ def test_teeth_and_balls_are_one_equilibrium(play):
     may = np.asarray(contacts.active)[:, 0, node]
     across = np.asarray(body.across)[..., node]
     gap = np.asarray(contacts.gap)[:, 0, node] - across @ pushes(nominal)
-    arm = np.abs(np.asarray(along(contacts.normal, mesh_ends(drive)[1])))[:, 0, node]
+    arm = np.abs(np.asarray(contact_velocity(contacts.normal, mesh_ends(drive)[1])))[:, 0, node]
     turned = float(found.wind_up[node] + found.touch[node])
     push = np.asarray(drive.line.radial(drive.bearing.angle)) - play
     approach = np.asarray(found.balls)[:, node]

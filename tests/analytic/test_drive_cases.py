@@ -15,7 +15,7 @@ from pitchpoint.analyses.registry import ANALYSES, FOUR_QUADRANTS, INSPECTION, R
 from pitchpoint.cases.built_drive import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle
-from pitchpoint.efficiency.drive_summary import together
+from pitchpoint.efficiency.drive_summary import points_per_batch
 from pitchpoint.errors import InputError
 from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.results.netcdf import decode, encode
@@ -245,7 +245,7 @@ f1 = 0.0003
 
 
 def size(case):
-    return together(case.design, case.models[0].stages)
+    return points_per_batch(case.design, case.models[0].stages)
 
 
 @pytest.mark.whole

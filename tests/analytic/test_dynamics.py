@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.energy import energies
+from pitchpoint.dynamics.energy import vibration_energies
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import by_steps
@@ -232,7 +232,7 @@ def test_fast_vibration_of_a_square_wave_is_exact(ratio, xi):
     found = np.stack([response.displacement[0].ravel(), response.velocity[0].ravel()], axis=1)
     error = (found[:: phase.shape[1] - 1] - np.array(exact)[:, :2]) / [1.0, NATURAL]
     assert np.max(np.abs(error)) < 1e-9 * np.max(np.abs(found[:, 0]))
-    assert energies(sys, response).closure < 1e-8
+    assert vibration_energies(sys, response).closure < 1e-8
 
 
 @pytest.mark.parametrize("ratio", [0.8, 4.0, 7.3])
@@ -246,7 +246,7 @@ def test_motion_and_energy_with_jumps_errors_and_arms(ratio):
         response.displacement[0, :, 5][: len(states)], states[:, 0], atol=1e-8 * scale
     )
     np.testing.assert_allclose(end[0], start_of(response)[0], atol=1e-8 * scale)
-    work = energies(sys, response)
+    work = vibration_energies(sys, response)
     assert work.closure < 1e-8
     assert work.damping < 0.0
     assert all(abs(part) > 1e-4 * abs(work.damping) for part in (work.mesh, work.error, work.arm))
@@ -261,7 +261,7 @@ def test_short_elements_resolve_a_fast_profile_error():
         excitation(one, lambda path: 5e-6 * np.cos(48.0 * np.pi * path)).error,
     )
     sys = system(40.0, 0.16)
-    assert energies(sys, solve(sys, excite, PeriodGrid(16))).closure < 1e-9
+    assert vibration_energies(sys, solve(sys, excite, PeriodGrid(16))).closure < 1e-9
 
 
 @pytest.mark.parametrize("excite", [rounded(), steps()], ids=["rounded", "steps"])
@@ -396,7 +396,7 @@ def test_two_coordinates():
     sys = System(mass, damping, jnp.array([LOAD, 20.0]), jnp.asarray(2.0 * np.pi * 2.6 / NATURAL))
     response = solve(sys, excite, SHORT)
     assert status(response) in (Code.SOLVED, Code.SEPARATES)
-    assert energies(sys, response).closure < 1e-8
+    assert vibration_energies(sys, response).closure < 1e-8
     start = start_of(response)
     _, end = marched(sys, excite, start, lambda s: s)
     unit = np.array([1.0, 1.0, NATURAL, NATURAL]) * np.max(np.abs(start[:2]))

@@ -15,7 +15,7 @@ from pitchpoint.contact.ellipse import (
     hertz_1881,
     largest_shear,
 )
-from pitchpoint.contact.elliptic_integrals import carlson_rd, carlson_rf, complete
+from pitchpoint.contact.elliptic_integrals import carlson_rd, carlson_rf, complete_integrals
 from pitchpoint.contact.hertz import line_half_width, line_pressure, line_shear
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 
@@ -49,7 +49,7 @@ def test_symmetric_integrals_are_those_of_another_library(own, other):
 
 def test_complete_integrals_are_those_of_another_library():
     complement = np.geomspace(1e-10, 1e3, 200)
-    whole, cosine, sine = jax.jit(complete)(complement)
+    whole, cosine, sine = jax.jit(complete_integrals)(complement)
     np.testing.assert_allclose(whole, scipy.special.ellipkm1(complement), rtol=2e-15)
     np.testing.assert_allclose(cosine + sine, whole, rtol=2e-15)
     second = whole - (1.0 - complement) * sine
@@ -58,7 +58,7 @@ def test_complete_integrals_are_those_of_another_library():
 
 def test_derivative_of_a_complete_integral_is_the_closed_form():
     """dK/dm = (E/(1 - m) - K)/(2 m)."""
-    slope = jax.jit(jax.grad(lambda complement: complete(complement)[0]))(0.3)
+    slope = jax.jit(jax.grad(lambda complement: complete_integrals(complement)[0]))(0.3)
     first, second = scipy.special.ellipk(0.7), scipy.special.ellipe(0.7)
     assert float(slope) == pytest.approx(-(second / 0.3 - first) / 1.4, rel=1e-13)
 
@@ -227,7 +227,7 @@ def test_ratio_of_axes_is_that_of_a_root_finder(ratio):
     found = contact(transverse=7e-3 * ratio)
 
     def missing(log):
-        _, cosine, sine = jax.jit(complete)(np.exp(-2.0 * log))
+        _, cosine, sine = jax.jit(complete_integrals)(np.exp(-2.0 * log))
         return 2.0 * log + np.log(cosine / sine) - np.log(ratio)
 
     asked = np.exp(brentq(missing, -8.0, 8.0, xtol=1e-14))

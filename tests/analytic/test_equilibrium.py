@@ -13,13 +13,13 @@ from scipy.optimize import nnls
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import ACTION, WAVE, touching, way
+from pitchpoint.gears.pairs import ACTION, WAVE, touching, way_of_pairs
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
-from pitchpoint.loading.equilibrium import equilibrium, touch
+from pitchpoint.loading.equilibrium import equilibrium, touching_approach
 from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.loading.sharing import applies, demand_sharing
+from pitchpoint.loading.sharing import demand_sharing, sharing_applies
 
 LANES, STATES = 40, 60
 
@@ -248,7 +248,7 @@ def test_derivatives_do_not_ask_which_value_is_the_largest_or_the_least(monkeypa
     lost.defjvp(lambda at, along: (at[0], jnp.nan * along[0]))
 
     def turned(by):
-        first = touch(by * gap, jnp.asarray(arm), jnp.asarray(active))
+        first = touching_approach(by * gap, jnp.asarray(arm), jnp.asarray(active))
         return jnp.sum(coupled(compliance, by * gap, arm, active, load).approach + first)
 
     expected = float(jax.jit(jax.grad(turned))(1.0))
@@ -304,7 +304,7 @@ class _Looked(Mesh):
     coordinates = rigid_contacts = spots = None
 
 
-way.register(_Looked, lambda looked: WAVE if looked.separate else ACTION)
+way_of_pairs.register(_Looked, lambda looked: WAVE if looked.separate else ACTION)
 touching.register(_Looked, lambda looked: not looked.separate)
 tooth_sections.register(_Looked, lambda _: ())
 
@@ -359,7 +359,8 @@ def test_cosine_laws_of_strain_wave_gears(name, end):
 def test_models_say_where_they_hold():
     cosines = {"xu_2021_cosine", "zhao_2022_cosine"}
     separate, touching = (
-        {m for m in LOAD_SHARING if applies(LOAD_SHARING[m], mesh(s))} for s in (True, False)
+        {m for m in LOAD_SHARING if sharing_applies(LOAD_SHARING[m], mesh(s))}
+        for s in (True, False)
     )
     assert separate == {"from_stiffness", *cosines}
     assert touching == set(LOAD_SHARING) - cosines

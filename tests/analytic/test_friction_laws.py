@@ -8,7 +8,7 @@ from bare_contacts import conditions
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.conditions import UNITS, arguments, evaluate
+from pitchpoint.lubrication.conditions import UNITS, evaluate, law_arguments
 from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2, xu_2007
 from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, FrictionLaw
 
@@ -27,7 +27,7 @@ def test_check_value_of_every_law(law):
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_every_law_asks_for_known_conditions(law):
-    wanted, _ = arguments(law.function)
+    wanted, _ = law_arguments(law.function)
     assert set(wanted) <= set(UNITS)
     assert set(law.ranges) <= set(wanted)
     assert law.name == law.function.__name__

@@ -8,7 +8,7 @@ from bare_contacts import conditions
 
 from pitchpoint import citations
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.lubrication.conditions import arguments, evaluate
+from pitchpoint.lubrication.conditions import evaluate, law_arguments
 from pitchpoint.lubrication.inlet_heating import (
     aihara_1987,
     murch_wilson_1975,
@@ -36,7 +36,7 @@ ROLLING = {
 
 def value(factor, **changed):
     given = {**AT, **changed}
-    asked, _ = arguments(factor)
+    asked, _ = law_arguments(factor)
     return factor(**{name: jnp.asarray(given[name], float) for name in asked})
 
 
@@ -56,9 +56,9 @@ def test_factors_by_hand():
 @pytest.mark.parametrize("factor", FACTORS)
 def test_factors_fall_from_one_with_finite_slopes(factor):
     loading = jnp.concatenate([jnp.zeros(1), jnp.logspace(-14.0, 4.0, 73)])
-    given = {name: jnp.asarray(v) for name, v in AT.items() if name in arguments(factor)[0]}
+    given = {name: jnp.asarray(v) for name, v in AT.items() if name in law_arguments(factor)[0]}
     given["slide_roll_ratio"] = jnp.asarray(0.0)
-    given = {name: v for name, v in given.items() if name in arguments(factor)[0]}
+    given = {name: v for name, v in given.items() if name in law_arguments(factor)[0]}
 
     def at(one):
         return factor(**{**given, "thermal_loading": one})

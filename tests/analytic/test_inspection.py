@@ -13,7 +13,7 @@ from pitchpoint.gears.cylindrical.inspection import (
     Toothing,
     backlash,
     backlash_limits,
-    involute,
+    scalar_involute,
 )
 from pitchpoint.gears.cylindrical.iso_286 import standard_tolerance, symmetrical_deviation
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
@@ -66,7 +66,11 @@ def test_the_backlash_of_that_record() -> None:
     pair = [gear(z).thinned(s * MM - gear(z).normal_thickness) for z, s in ((51, 1.719), (52, 1.8))]
     shift = pair[0].profile_shift + pair[1].profile_shift
     working = brentq(
-        lambda a: involute(a) - involute(radians(20)) - 2 * tan(radians(20)) * shift / 103, 0.1, 1.0
+        lambda a: (
+            scalar_involute(a) - scalar_involute(radians(20)) - 2 * tan(radians(20)) * shift / 103
+        ),
+        0.1,
+        1.0,
     )
     distance = 51.5 * MM * cos(radians(20)) / cos(working)
     thin = [one.thinned(s * MM) for one, s in zip(pair, (-0.296, -0.220), strict=True)]
@@ -188,7 +192,7 @@ def test_backlash_by_centre_distance(first, second, more) -> None:
     assert backlash(first, second, nominal).circumferential == pytest.approx(0.0, abs=1e-15)
     distance = nominal + more
     working = acos(abs(first.base_radius + second.base_radius) / distance)
-    wider = involute(working) - involute(first.transverse_pressure_angle)
+    wider = scalar_involute(working) - scalar_involute(first.transverse_pressure_angle)
     signed = distance if second.side > 0.0 else -distance
     play = backlash(first, second, distance)
     assert play.circumferential == pytest.approx(2.0 * signed * wider, rel=1e-9)

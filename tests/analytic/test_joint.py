@@ -5,8 +5,8 @@ import pytest
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.dynamics.excitation import ErrorOrders
-from pitchpoint.dynamics.joint import Joint, Sliding, respond
-from pitchpoint.dynamics.joint_course import MotorRun, course, fading, settled
+from pitchpoint.dynamics.joint import Joint, Sliding, joint_response
+from pitchpoint.dynamics.joint_course import MotorRun, fading, joint_motion, steady_joint_vibration
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -14,7 +14,7 @@ from pitchpoint.status import Code
 STIFFNESS, RATIO, TORQUE, LOAD, MOTOR = 4e4, 100.0, 60.0, 1.2, 0.7
 ERROR = 1e-4
 
-linear = program(respond)
+linear = program(joint_response)
 torque_and_slope = jax.jit(lambda curve, at: (curve.torque_at(at), curve.slope_at(at)))
 slope_of_energy = jax.jit(jax.vmap(jax.grad(lambda curve, at: curve.energy_at(at), 1), (None, 0)))
 
@@ -178,7 +178,7 @@ def test_a_free_vibration_without_damping_is_a_cosine(motor: float) -> None:
     made = joint(motor=motor, damping=0.0)
     frequency, _, _, rest = own(made)
     start = array([0.0, 0.0, float(rest) + 2e-4, 0.0])
-    found = course(made, NONE, MotorRun.steady(50.0), array(TIMES), start)
+    found = joint_motion(made, NONE, MotorRun.steady(50.0), array(TIMES), start)
     expected = float(rest) + 2e-4 * np.cos(2.0 * np.pi * float(frequency) * TIMES)
     np.testing.assert_allclose(found.wind_up, expected, atol=1e-8 * 2e-4)
     assert found.closure < 1e-8
@@ -198,7 +198,7 @@ def test_a_free_vibration_without_damping_is_a_cosine(motor: float) -> None:
 def test_the_energy_closes_while_the_motor_speeds_up(made: Joint) -> None:
     rest = float(own(made)[3])
     even = MotorRun(array(40.0), array(120.0 if np.isinf(made.motor) else 40.0), array(0.1))
-    found = course(made, WAVE, even, array(TIMES), array([0.0, 0.0, rest + 1e-3, 0.0]))
+    found = joint_motion(made, WAVE, even, array(TIMES), array([0.0, 0.0, rest + 1e-3, 0.0]))
     assert found.closure < 1e-8
     assert int(found.status.code) == Code.SOLVED
     assert (np.diff(found.damping) >= 0.0).all()
@@ -213,7 +213,7 @@ def test_a_motor_that_speeds_up_takes_the_load_along() -> None:
     gain = 200.0 / RATIO / 0.2
     even = MotorRun(array(40.0), array(240.0), array(0.2))
     start = array([0.0, 0.0, float(own(made)[3]), 0.0])
-    found = course(made, NONE, even, array(TIMES), start)
+    found = joint_motion(made, NONE, even, array(TIMES), start)
     assert found.torque[-1] == pytest.approx(TORQUE + LOAD * gain, rel=1e-4)
     assert found.output_rate[-1] == pytest.approx(240.0 / RATIO, rel=1e-2)
 
@@ -223,7 +223,7 @@ def test_a_motor_that_speeds_up_takes_the_load_along() -> None:
 def test_small_errors_vibrate_on_the_tangent(times: float) -> None:
     made = joint(stiffening(4e-4))
     order, error, speed = map(array, (2.0, 1e-7, times * float(own(made)[2])))
-    whole = settled(made, order, error, speed, array(fading(made, order, speed)))
+    whole = steady_joint_vibration(made, order, error, speed, array(fading(made, order, speed)))
     tangent = linear(made, order, error, speed)
     assert int(whole.status.code) == Code.SOLVED
     for name in ("torque", "wind_up", "output"):
@@ -249,7 +249,7 @@ def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
     # The wind-up of the state counts with the error, whose rate is zero at its crest.
     start = [swing["motor"][0], rates["motor"], rest + swing["wind_up"][0] + small]
     wave = ErrorOrders(array([small]), array([2.0]), array([0.0]))
-    there = course(
+    there = joint_motion(
         made, wave, MotorRun.steady(speed), array(TIMES), array([*start, rates["wind_up"]])
     )
     size = np.ptp(swing["wind_up"])
@@ -261,7 +261,7 @@ def test_a_free_motor_vibrates_as_the_tangent_says() -> None:
 def test_friction_at_rest_in_time_is_about_its_first_harmonic() -> None:
     made = joint(held=0.1)
     order, error, speed = map(array, (2.0, ERROR, float(own(made)[2])))
-    whole = settled(made, order, error, speed, array(fading(made, order, speed)))
+    whole = steady_joint_vibration(made, order, error, speed, array(fading(made, order, speed)))
     tangent, free = (linear(one, order, error, speed) for one in (made, joint()))
     swing, lost = (float(abs(one.wind_up)) for one in (tangent, free))
     assert whole.wind_up == pytest.approx(swing, abs=0.05 * (lost - swing))

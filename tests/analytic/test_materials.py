@@ -345,13 +345,13 @@ def test_composite_has_a_finite_gradient_where_both_flanks_are_smooth():
 def test_every_reference_can_be_cited():
     for key in citations.available():
         entry = citations.reference(key)
-        assert entry.title in citations.cite(key)
+        assert entry.title in citations.citation_text(key)
         assert str(entry.year) in key
         assert citations.bibtex(key).count("{") == citations.bibtex(key).count("}")
 
 
 def test_citation_of_an_article():
-    assert citations.cite("xu_2007") == (
+    assert citations.citation_text("xu_2007") == (
         "Xu, H., Kahraman, A., Anderson, N. E. and Maddock, D. G. (2007). Prediction of mechanical "
         "efficiency of parallel-axis gear pairs. Journal of Mechanical Design, 129(1), 58-68. "
         "doi:10.1115/1.2359478."
@@ -359,4 +359,4 @@ def test_citation_of_an_article():
     assert "@article{xu_2007," in citations.bibtex("xu_2007")
     assert "pages = {58--68}" in citations.bibtex("xu_2007")
     with pytest.raises(InputError, match="did you mean xu_2007"):
-        citations.cite("xu2007")
+        citations.citation_text("xu2007")

@@ -8,7 +8,7 @@ from sound import quick_first
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.ellipse import hertz_1881
-from pitchpoint.dynamics.bodies import Body, across, motor
+from pitchpoint.dynamics.bodies import Body, motor, radial_bearings
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.passage import passage, polynomial, tabulated
@@ -215,7 +215,7 @@ def test_a_slow_motion_is_the_quasi_static_cycle(family):
 
 
 def bearing(inertia, torque=0.0, mass=2.0):
-    return Body(inertia, torque, support=across(mass, 2e8, 4e3))
+    return Body(inertia, torque, support=radial_bearings(mass, 2e8, 4e3))
 
 
 @pytest.mark.whole
@@ -236,7 +236,10 @@ def test_energy_of_a_transient_closes_with_every_effect(combination):
     else:
         given["law"] = CONTACT_LAWS["separating"]
         drive = motor(stall_torque=100.0, no_load_speed=1.2 * SPEED, inertia=1e-3)
-        bodies = dataclasses.replace(drive, support=across(2.0, 2e8, 4e3)), bearing(6e-3, 20.0, 4.0)
+        bodies = (
+            dataclasses.replace(drive, support=radial_bearings(2.0, 2e8, 4e3)),
+            bearing(6e-3, 20.0, 4.0),
+        )
     rate = np.pad(SPEED * MOTION, (0, 4))
     times = np.linspace(0.0, 3.3 * float(SPUR.period) / SPEED, 60)
     found = transient(moving(bodies, **given), times, rate=rate)

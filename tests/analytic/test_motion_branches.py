@@ -8,7 +8,7 @@ from moving_pair import INERTIA, LAW, LOAD, OPERATION, PAIR, XU, moving
 from moving_pair import SPEED as SLOW
 
 from pitchpoint._jax import array
-from pitchpoint.dynamics.bodies import Body, across
+from pitchpoint.dynamics.bodies import Body, radial_bearings
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import mean_stiffness, modes
@@ -177,7 +177,7 @@ def test_modes_of_a_pair_on_bearings_are_those_of_springs_in_line():
     """Frequencies and damping by the roots of the whole system; across the line of action in closed form."""
     masses, spring, brake = (2.0, 4.0), 2e8, 400.0
     bodies = tuple(
-        Body(array(inertia), support=across(mass, spring, brake))
+        Body(array(inertia), support=radial_bearings(mass, spring, brake))
         for inertia, mass in zip(INERTIA, masses, strict=True)
     )
     own = vibrating(bodies=bodies)

@@ -24,8 +24,8 @@ from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_
 from pitchpoint.lubrication.ehl.patch.grid_error import OPENS, REMAINS
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
-from pitchpoint.lubrication.ehl.patch.newton import linear, product
-from pitchpoint.lubrication.ehl.patch.response import polished
+from pitchpoint.lubrication.ehl.patch.newton import jacobian_product, linearised
+from pitchpoint.lubrication.ehl.patch.response import polished_patch
 from pitchpoint.lubrication.ehl.registry import COARSE
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
@@ -347,13 +347,13 @@ def test_derivatives_of_the_balances_are_those_of_differences():
     change[:-1] = field[:, 1:-1].ravel()
 
     def rest(step: float) -> np.ndarray:
-        at = jax.jit(linear)(
+        at = jax.jit(linearised)(
             problem, pressure + step * field, level + step * change[-1], array(0.0)
         )
         return np.append(np.asarray(at.rest), at.load), np.asarray(at.full), np.asarray(at.scale)
 
-    at = jax.jit(linear)(problem, pressure, level, array(0.0))
-    exact = np.asarray(product(at, array(change)))
+    at = jax.jit(linearised)(problem, pressure, level, array(0.0))
+    exact = np.asarray(jacobian_product(at, array(change)))
     step = 1e-5
     (more, full, scale), (less, other, scaled) = rest(step), rest(-step)
     kept = np.append((full == other).ravel(), True)
@@ -390,7 +390,7 @@ def figures(film: Any) -> Any:
     return jnp.stack([film.mean_film, film.minimum_film, film.shear_force[0], film.rolling[0]])
 
 
-POLISHED = jax.jit(polished)
+POLISHED = jax.jit(polished_patch)
 
 
 def solved_again(found: PatchFilms, by: np.ndarray) -> np.ndarray:

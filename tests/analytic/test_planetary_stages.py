@@ -29,7 +29,7 @@ from pitchpoint.analyses.running import from_rest
 from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.results.by_stage import of_stage, stages_of
-from pitchpoint.runs.run import describe, load_case
+from pitchpoint.runs.run import load_case, uncomputed_manifests
 
 NEEDLES = {
     "between": ["planet", "carrier"],
@@ -323,7 +323,7 @@ def test_inputs_of_films_and_wear_of_sets_are_told_once_as_given():
     row = {"stages": [{"gears": PAIR}, {"gears": SETS[0], "film": FILM, "wear": WORN}], **of_drive}
     by_itself = {"gears": SETS[0], "film": FILM, "wear": WORN, **of_drive}
     for tree, table, inside in ((row, "stages", "2.wear."), (by_itself, "wear", "")):
-        (manifest,) = describe(tree)
+        (manifest,) = uncomputed_manifests(tree)
         rows = [one for one in manifest["inputs"] if one["table"] == table and one["given"]]
         told = {one["key"]: one["value"] for one in rows if one["key"].startswith(inside)}
         cycles = (f"{inside}cycles", 1e6)

@@ -9,7 +9,7 @@ import pytest
 from budget import EVENT
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import InputError
@@ -19,7 +19,7 @@ from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.status import Code, Status, summary
+from pitchpoint.status import Code, Status, status_summary
 
 LAW = {law.name: law for law in LAWS}
 STEEL = solids.find("steel").build()
@@ -89,7 +89,7 @@ def test_held_coefficients_are_compiled_once():
 
     _, status = solved_cycle(DESIGN, POINT, models("constant"), wandering, most=10)
     assert Code(int(status.code)) is Code.NOT_CONVERGED
-    assert summary(status)["sentence"] == "the iteration ended without a solution"
+    assert status_summary(status)["sentence"] == "the iteration ended without a solution"
     assert len(turns) == int(status.iterations) == 10
     assert turns[1] == turns[-1], f"a turn has compiled something: {turns}"
 
@@ -122,7 +122,7 @@ def vibrating(phase, shaking, speed):
     rates = DESIGN.motion[:, None] * speed + jnp.stack([jnp.zeros_like(shaking), shaking])
     given = {"load": load, "nominal_load": jnp.asarray(3000.0)}
     at = DESIGN.conditions(contacts, point, **given, rates=rates)
-    slip = along(contacts.slip_arm, rates)
+    slip = contact_velocity(contacts.slip_arm, rates)
     return (
         at.sliding * 1.0,
         jnp.abs(slip),
@@ -150,7 +150,7 @@ def test_a_vibration_asks_the_same_laws_with_its_own_rates():
 
 def test_a_status_says_the_worst_of_many():
     codes = jnp.array([Code.SOLVED, Code.LOCKED])
-    told = summary(Status(codes, jnp.array([1e-14, 0.1]), jnp.array([3, 60])))
+    told = status_summary(Status(codes, jnp.array([1e-14, 0.1]), jnp.array([3, 60])))
     assert told["code"] == Code.LOCKED
     assert told["residual"] == 1e-14
     assert told["iterations"] == 60

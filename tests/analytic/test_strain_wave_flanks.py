@@ -12,7 +12,7 @@ from strain_wave_forms import BY, FORMS, MODULE, build
 from strain_wave_positions import drive, slope
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.tooth_section import tooth_sections
@@ -99,7 +99,9 @@ def engaged(mesh, phases, torque):
     """Contacts at phases under a torque."""
     (part,) = passing_teeth(mesh, phases)
     contacts, carried = part[0], wound(mesh, part, torque)
-    arm = np.abs(along(np.asarray(contacts.normal), np.asarray(mesh_ends(mesh)[1])))[:, 0]
+    arm = np.abs(contact_velocity(np.asarray(contacts.normal), np.asarray(mesh_ends(mesh)[1])))[
+        :, 0
+    ]
     found = {
         "angle": 2.0 * np.pi * np.asarray(contacts.path[:, 0]),
         "active": contacts.active[:, 0],

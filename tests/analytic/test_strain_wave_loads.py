@@ -13,7 +13,7 @@ from sound import OnDemand, quick_first
 from strain_wave_positions import drive
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagement
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import of_pairs
@@ -113,7 +113,7 @@ def test_no_edge_carries_and_every_pair_closes_its_gap(drives, runs, form, torqu
     # The normal of the flank by differences of its places, and the play along it.
     clearance = space.play(place) * np.cos(by.direction(station, angle, 2e-7))
     moved = np.asarray(yielding(mesh, at.contacts, at.body, jnp.asarray(torque), at.wound.force))
-    arm = np.abs(along(contacts.normal, np.asarray(mesh_ends(mesh)[1])))[:, 0]
+    arm = np.abs(contact_velocity(contacts.normal, np.asarray(mesh_ends(mesh)[1])))[:, 0]
     left = moved + clearance - arm * (at.wound.wind_up + at.wound.touch)
     assert np.max(np.abs(left[carries])) < 2e-8
 

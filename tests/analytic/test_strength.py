@@ -25,7 +25,7 @@ from rated_pairs import (
 from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.rated_pair import bare
+from pitchpoint.gears.rated_pair import bare_pair
 from pitchpoint.materials import solids
 from pitchpoint.programs import program
 from pitchpoint.results.strength import STRENGTH
@@ -90,7 +90,7 @@ def test_an_undercut_moves_the_point_where_one_pair_begins(wheel: int, factor: f
         tip_alteration=(0.0, 0.0),
     )
     ends, angle = _where_one_carries(pair)
-    found = rating(bare(pair), duty(50.0, 1500.0), factors(), strengths(), ends=ends)
+    found = rating(bare_pair(pair), duty(50.0, 1500.0), factors(), strengths(), ends=ends)
     np.testing.assert_allclose(found["single_contact_factor"], [factor, 1.0], atol=5e-5)
     assert found["load_angle"][1] == pytest.approx(float(angle), rel=1e-9)
 
@@ -140,8 +140,8 @@ def ring() -> CylindricalPair:
 
 
 def test_a_ring_is_rated_on_the_fillet_that_it_has(ring: CylindricalPair) -> None:
-    found = rating(bare(ring), duty(7.0, 1000.0), factors(), strengths())
-    half, distance = tangent(np.asarray(_flanks(bare(ring)))[1], radians(60.0))
+    found = rating(bare_pair(ring), duty(7.0, 1000.0), factors(), strengths())
+    half, distance = tangent(np.asarray(_flanks(bare_pair(ring)))[1], radians(60.0))
     assert found["root_chord"][1] == pytest.approx(2.0 * half, rel=1e-3)
     assert found["root_fillet_radius"][1] == pytest.approx(0.3e-3)
     # The force is tangent to the base circle: it crosses the middle of the tooth at r_b/cos(alpha_Fn).
@@ -157,9 +157,9 @@ def test_a_ring_is_rated_on_the_fillet_that_it_has(ring: CylindricalPair) -> Non
 
 def test_a_thinner_ring_has_thinner_roots(ring: CylindricalPair) -> None:
     given = duty(7.0, 1000.0), factors(), strengths()
-    nominal = rating(bare(ring), *given)
+    nominal = rating(bare_pair(ring), *given)
     thin = replace(FINISH, thickness=numbers(0.0, -60e-6))
-    found = rating(bare(ring), *given, thin)
+    found = rating(bare_pair(ring), *given, thin)
     assert nominal["root_chord"][1] - found["root_chord"][1] == pytest.approx(60e-6)
     assert found["root_chord"][0] == nominal["root_chord"][0]
     # Bending goes with the square of the chord, and the force crosses the thinner tooth nearer to its root.
@@ -171,7 +171,7 @@ def test_a_thinner_ring_has_thinner_roots(ring: CylindricalPair) -> None:
 def test_planet_and_ring_as_kisssoft_prints_them(ring: CylindricalPair) -> None:
     """Its ring has the root that a pinion cutter leaves, rounder than the arc that is rated here."""
     pair = replace(
-        bare(ring),
+        bare_pair(ring),
         teeth=numbers(17, -56),
         module=numbers(45e-3),
         profile_shift=numbers(0.8021, -0.5013),
@@ -205,7 +205,7 @@ def test_planet_and_ring_as_kisssoft_prints_them(ring: CylindricalPair) -> None:
 def test_a_ring_of_a_pinion_cutter_as_kisssoft_prints_it(ring: CylindricalPair) -> None:
     """Second stage by the edition of 2006: cutter of 30 teeth, x_0 = 0, corners of 0.3 modules."""
     pair = replace(
-        bare(ring),
+        bare_pair(ring),
         teeth=numbers(36, -93),
         module=numbers(21e-3),
         profile_shift=numbers(0.5039, 0.1171),

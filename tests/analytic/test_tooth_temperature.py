@@ -11,9 +11,9 @@ import pytest
 
 import pitchpoint
 from pitchpoint import citations
-from pitchpoint.cases.solids import heated, heating, surrounded
+from pitchpoint.cases.solids import heating, solids_at_root_temperature, surrounded
 from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
-from pitchpoint.efficiency.summary import heat
+from pitchpoint.efficiency.summary import tooth_heat_figures
 from pitchpoint.efficiency.tooth_temperature import isothermal, modulus_at, vdi_2736_2
 from pitchpoint.efficiency.warm_teeth import warm_teeth
 from pitchpoint.errors import InputError
@@ -173,10 +173,10 @@ def test_heat_modulus_and_friction_are_in_balance(warm):
     assert int(warm.warming.code) == Code.SOLVED
     assert 2 < int(warm.warming.iterations) < 20
     assert float(warm.warming.residual) < 1e-11
-    found = heat(warm.design, warm.operation, warm.models[0])
+    found = tooth_heat_figures(warm.design, warm.operation, warm.models[0])
     figures = {name: float(value) for name, value in found.items()}
     cool = surrounded(warm.solids, warm.case.operation.temperature)
-    again = heated(warm.case, warm.design, cool, figures)
+    again = solids_at_root_temperature(warm.case, warm.design, cool, figures)
     for ours, theirs in zip(warm.solids, again, strict=True):
         np.testing.assert_allclose(ours.temperature, theirs.temperature, rtol=1e-12)
         np.testing.assert_allclose(ours.solid.young, theirs.solid.young, rtol=1e-11)

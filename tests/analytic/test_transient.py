@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body, Support, across
+from pitchpoint.dynamics.bodies import Body, Support, radial_bearings
 from pitchpoint.dynamics.right_hand_side import MovingMesh, contact_forces
 from pitchpoint.dynamics.transient import CLOSED, _code, _known, transient
 from pitchpoint.efficiency.drag import Drag
@@ -68,7 +68,7 @@ def pair(driver=0):
 
 
 def gear(inertia, torque=(0.0, 0.0), held=(HELD, 0.0, 0.0), **braked):
-    return Body(inertia, torque, support=across(*held), **braked)
+    return Body(inertia, torque, support=radial_bearings(*held), **braked)
 
 
 def moving(bodies, knots=(0.0, 1.0), level=0.0, phase=0.4, load=100.0, relaxation=0.0, design=None):
@@ -413,7 +413,7 @@ def shifting(*ways):
         ({"bodies": GEARS[:1]}, TIMES, "one body for each of gear 1, gear 2; 1 bodies are given"),
         ({"bodies": (Body(0.0), GEARS[1])}, TIMES, "gear 1 needs a positive inertia, got 0"),
         (
-            {"bodies": (GEARS[0], Body(1.0, support=across(-1.0, 1.0)))},
+            {"bodies": (GEARS[0], Body(1.0, support=radial_bearings(-1.0, 1.0)))},
             TIMES,
             "gear 2 needs a positive mass, got -1",
         ),

@@ -15,7 +15,7 @@ from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import patch_film
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
-from pitchpoint.lubrication.ehl.patch.heat import TEMPERATURES, heated, warmed
+from pitchpoint.lubrication.ehl.patch.heat import TEMPERATURES, contact_heat, warmed_patch
 from pitchpoint.lubrication.ehl.patch.layout import problem_on
 from pitchpoint.lubrication.ehl.patch.response import polished_warm
 from pitchpoint.lubrication.ehl.patch.transient import march_patches
@@ -236,9 +236,9 @@ def test_derivatives_of_films_are_those_of_differences() -> None:
 def again(by: Any) -> Any:
     """Film of a contact nearby on the same grid, by steps from the solution until they stay."""
     found, contact = sliding(), changed(by)
-    heats, (rows, nodes) = heated(contact), found.pressure.shape
+    heats, (rows, nodes) = contact_heat(contact), found.pressure.shape
     cold, rise = problem_on(contact, found.layout, nodes, rows, rows), jnp.asarray(found.rise)
-    solution = warmed(cold, rise), jnp.asarray(found.pressure), jnp.asarray(found.level)
+    solution = warmed_patch(cold, rise), jnp.asarray(found.pressure), jnp.asarray(found.level)
     problem, pressure, level = jax.lax.fori_loop(
         0, 4, lambda _, one: polished_warm(heats, *one), solution
     )

@@ -35,9 +35,8 @@ from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.three_k import mesh_efficiency
 from pitchpoint.wear import film_share
 from pitchpoint.wear.gradients import march_sensitivities
-from pitchpoint.wear.history import Cells, DriverTurn, WearModel, as_new, one_turn
-from pitchpoint.wear.march import Limit, Rate, Reached, after
-from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.history import Cells, DriverTurn, WearModel, unworn_start, wear_of_turn
+from pitchpoint.wear.march import Limit, Rate, Reached, unworn_flanks, wear_step
 
 
 @cache
@@ -51,7 +50,7 @@ def test_flanks_of_a_gear_are_worn_by_each_of_its_mates():
     start, grid = begun(built)
     three = replace(WEAR, mates=array([3.0, 1.0]))
     given = built.design, built.operation, built.models[0], three
-    found = jax.device_get(one_turn(*given, grid, start, jnp.zeros(grid.shape)))
+    found = jax.device_get(wear_of_turn(*given, grid, start, jnp.zeros(grid.shape)))
     alone = of_pair()[0]
     for got, want in ((found.depth, alone.depth), (found.volume, alone.volume)):
         assert got[0] == pytest.approx(3.0 * want[0], rel=1e-14)
@@ -61,10 +60,10 @@ def test_flanks_of_a_gear_are_worn_by_each_of_its_mates():
 
 def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
     given, ratio = discs(), 0.8
-    start, cells = as_new(*given, parts=PARTS, count=CELLS)
+    start, cells = unworn_start(*given, parts=PARTS, count=CELLS)
 
     def rate(depth: np.ndarray) -> Rate:
-        return Rate.of(one_turn(*given, WEAR, cells, start, array(depth)))
+        return Rate.of(wear_of_turn(*given, WEAR, cells, start, array(depth)))
 
     reached = marched(rate, (2, CELLS, 1), 1e9)
     # Disc 1 turns by the ratio of speeds and radii while disc 0 turns once.
@@ -77,7 +76,7 @@ def test_discs_wear_by_their_line_load_and_sliding_over_rolling():
 
 @pytest.mark.whole
 def test_many_discs_together_wear_as_each_of_them():
-    given, cells = discs(), as_new(*discs(), parts=PARTS, count=CELLS)[1]
+    given, cells = discs(), unworn_start(*discs(), parts=PARTS, count=CELLS)[1]
     loads, turns = np.array([1.0, 2.0, 0.5]) * LOAD, np.array([1e9, 1e6, 1e9])
     limit = np.array([np.inf, np.inf, 1e-5])
 
@@ -98,10 +97,10 @@ def test_many_discs_together_wear_as_each_of_them():
 def marched(
     rate: Any, shape: tuple[int, int, int], turns: float, tolerance: float = 1e-3
 ) -> Reached:
-    state = unworn(rate, shape)
+    state = unworn_flanks(rate, shape)
     start = state.rate.pressure
     while not state.end:
-        state = after(state, rate, Limit(turns), start=start, tolerance=tolerance)
+        state = wear_step(state, rate, Limit(turns), start=start, tolerance=tolerance)
     assert state.end == "turns"
     assert state.turns == turns
     return state
@@ -207,7 +206,7 @@ def rate_of(built: Built, cells: int = CELLS) -> tuple[Any, tuple[int, int, int]
     given = built.design, built.operation, built.models[0], WEAR, grid, start
 
     def rate(depth: np.ndarray) -> Rate:
-        return Rate.of(one_turn(*given, array(depth)))
+        return Rate.of(wear_of_turn(*given, array(depth)))
 
     return rate, grid.shape
 
@@ -236,7 +235,7 @@ def test_worn_flanks_hand_the_load_to_those_that_are_less_worn():
 @pytest.mark.whole
 def test_the_number_of_steps_does_not_grow_with_the_cycles():
     given = discs()
-    start, cells = as_new(*given, parts=PARTS, count=CELLS)
+    start, cells = unworn_start(*given, parts=PARTS, count=CELLS)
 
     def steps(coefficient: float, turns: float) -> int:
         asked: list[int] = []
@@ -244,7 +243,7 @@ def test_the_number_of_steps_does_not_grow_with_the_cycles():
 
         def rate(depth: np.ndarray) -> Rate:
             asked.append(1)
-            found = one_turn(*given, slow, cells, start, array(depth))
+            found = wear_of_turn(*given, slow, cells, start, array(depth))
             return Rate(
                 np.asarray(found.depth), float(found.pressure), False, False, bool(found.lost)
             )
@@ -257,7 +256,7 @@ def test_the_number_of_steps_does_not_grow_with_the_cycles():
 
 def test_without_wear_nothing_changes():
     rate, shape = rate_of(pair())
-    state = unworn(lambda depth: replace(rate(depth), depth=np.zeros(shape)), shape)
+    state = unworn_flanks(lambda depth: replace(rate(depth), depth=np.zeros(shape)), shape)
     assert state.end == "no wear"
     assert not state.depth.any()
 
@@ -268,12 +267,12 @@ def at_depth(built: Built, wear: WearModel, depth: float) -> list[Reached]:
     given = built.design, built.operation, built.models[0], wear, grid, start
 
     def rate(depth: np.ndarray) -> Rate:
-        return Rate.of(one_turn(*given, array(depth)))
+        return Rate.of(wear_of_turn(*given, array(depth)))
 
-    states = [unworn(rate, grid.shape)]
+    states = [unworn_flanks(rate, grid.shape)]
     limit, first = Limit(1e12, depth=depth), states[0].rate.pressure
     while not states[-1].end:
-        states.append(after(states[-1], rate, limit, start=first, tolerance=1e-5))
+        states.append(wear_step(states[-1], rate, limit, start=first, tolerance=1e-5))
     assert states[-1].end == "depth"
     return states
 
@@ -332,8 +331,8 @@ def test_flanks_that_count_as_new_wear_by_their_first_rate():
 @pytest.mark.whole
 def test_sensitivities_of_discs_are_the_powers_of_archard():
     given = discs()
-    start, cells = as_new(*given, parts=PARTS, count=CELLS)
-    first = np.asarray(one_turn(*given, WEAR, cells, start, jnp.zeros((2, CELLS, 1))).depth)
+    start, cells = unworn_start(*given, parts=PARTS, count=CELLS)
+    first = np.asarray(wear_of_turn(*given, WEAR, cells, start, jnp.zeros((2, CELLS, 1))).depth)
     turns, worn = np.array([0.0, 1e8, 3e8]), first * np.array([0.0, 1e8, 3e8])[:, None, None, None]
     found = march_sensitivities((*given[:2], WEAR), given[2], cells, PARTS, turns, worn)
     of_sliding = -0.8 / (1.0 - 0.8)
@@ -346,10 +345,10 @@ def test_the_march_ends_where_a_measure_of_the_teeth_does():
     shape = (2, 4, 1)
     depth = np.array([2e-12, 1e-12])[:, None, None] * np.ones(shape)
     rate, play = Rate(depth, 1e9, False, False, False), 3e-6
-    state = unworn(lambda _: rate, shape)
+    state = unworn_flanks(lambda _: rate, shape)
     limit = Limit(1e9, teeth=(("backlash", lambda one: one[:, 0, 0].sum() - play),))
     while not state.end:
-        state = after(state, lambda _: rate, limit, start=1e9, tolerance=1e-3)
+        state = wear_step(state, lambda _: rate, limit, start=1e9, tolerance=1e-3)
     assert state.end == "backlash"
     assert state.turns == pytest.approx(1e6, rel=1e-3)
     assert state.depth.sum(axis=0)[0, 0] == pytest.approx(play, rel=1e-3)
@@ -362,9 +361,9 @@ def test_the_march_ends_where_the_pressure_reaches_the_hardness():
         pressure = 1e9 + 1e14 * float(np.max(depth))
         return Rate(1e-12 * np.ones(shape), pressure, False, False, False)
 
-    state, limit = unworn(rate, shape), Limit(1e9, hardness=1.96e9)
+    state, limit = unworn_flanks(rate, shape), Limit(1e9, hardness=1.96e9)
     while not state.end:
-        state = after(state, rate, limit, start=1e9, tolerance=1e-3)
+        state = wear_step(state, rate, limit, start=1e9, tolerance=1e-3)
     assert state.end == "hardness"
     assert state.rate.pressure == pytest.approx(1.96e9, rel=1e-3)
     assert state.turns == pytest.approx(0.96e9 / 1e14 / 1e-12, rel=1e-3)
@@ -393,7 +392,7 @@ def test_films_tell_the_load_on_asperities(monkeypatch):
 
     monkeypatch.setattr("pitchpoint.wear.history.asperity_share", told)
     none = jnp.zeros(cells.shape)
-    found = one_turn(*given, FILMS, cells, start, none)
+    found = wear_of_turn(*given, FILMS, cells, start, none)
     ((at, share),) = seen
     load = np.asarray(at.load)
     assert not share[load == 0.0].any()
@@ -426,4 +425,4 @@ def test_a_film_that_is_not_solved_is_never_a_result(monkeypatch):
     start, cells = begun(built)
     none = jnp.zeros(cells.shape)
     given = built.design, built.operation, built.models[0], FILMS
-    assert bool(one_turn(*given, cells, start, none).lost)
+    assert bool(wear_of_turn(*given, cells, start, none).lost)

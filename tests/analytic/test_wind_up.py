@@ -9,7 +9,7 @@ import pytest
 from bare_contacts import line_contacts
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.contact.surface import Spot, Waves
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.gear_body import GearBody
@@ -19,9 +19,9 @@ from pitchpoint.gears.pairs import of_pairs
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.drive import places
 from pitchpoint.loading import wind_up as module
-from pitchpoint.loading.balance import balance
+from pitchpoint.loading.balance import force_balance
 from pitchpoint.loading.compliance import Compliance
-from pitchpoint.loading.equilibrium import touch
+from pitchpoint.loading.equilibrium import touching_approach
 from pitchpoint.loading.kinematic_error import added_gap, kinematic_error
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.tooth_compliance import terms_of
@@ -153,7 +153,7 @@ def test_wind_up_stiffness_and_pairs_grow_with_the_torque(found):
 
 
 def test_torque_is_carried_alike_at_both_ends_of_the_axis(found, drive, at):
-    arm = np.abs(np.asarray(along(at.normal, mesh_ends(drive)[1])))
+    arm = np.abs(np.asarray(contact_velocity(at.normal, mesh_ends(drive)[1])))
     torque = (found.force * arm[:, :, None]).sum(axis=(0, 1))
     np.testing.assert_allclose(torque, found.load, rtol=1e-11)
     np.testing.assert_allclose(found.inner_load[0], found.inner_load[1], rtol=1e-9)
@@ -176,7 +176,7 @@ def test_without_torque_the_first_pairs_touch(drive, found, at):
     np.testing.assert_array_equal(zero.force, 0.0)
     assert np.all(zero.stiffness > 0.5 * found.stiffness[0])
     assert np.all(zero.stiffness <= found.stiffness[0])
-    play = at.gap / np.abs(along(at.normal, np.asarray(mesh_ends(drive)[1])))
+    play = at.gap / np.abs(contact_velocity(at.normal, np.asarray(mesh_ends(drive)[1])))
     first = play <= zero.touch[0] + 1e-7 * play[at.active].max()
     pairs = np.asarray(of_pairs(drive, (first & at.active).any(axis=1) * 1.0)) > 0.0
     np.testing.assert_array_equal(zero.loaded_pairs[0], pairs.sum(axis=0))
@@ -188,7 +188,7 @@ def test_branches_are_in_balance_with_friction(found, drive, at):
     """Turning the loaded member alone with its torque of the branch asks for the forces without friction."""
     mu, force = 0.08, found.force[..., 0]
     at = jax.tree.map(lambda x: x[..., :1], at)
-    side = float(np.sign(np.sum(along(at.normal, mesh_ends(drive)[1]) * force[..., :1])))
+    side = float(np.sign(np.sum(contact_velocity(at.normal, mesh_ends(drive)[1]) * force[..., :1])))
     loop = hysteresis(found, mu)
 
     @jax.jit
@@ -199,7 +199,7 @@ def test_branches_are_in_balance_with_friction(found, drive, at):
             "loaded": mesh_ends(drive)[1],
             "load": load,
         }
-        return balance(at, share, **given, friction=lambda x: jnp.full_like(x, mu)).force
+        return force_balance(at, share, **given, friction=lambda x: jnp.full_like(x, mu)).force
 
     for sense, branch in ((1.0, loop.loading), (-1.0, loop.unloading)):
         np.testing.assert_allclose(
@@ -221,8 +221,8 @@ def of_pair(mesh, load):
     at = stiffness.phase.ravel()
     found = wind_up(mesh, loaded, (STEEL, STEEL), TERMS, load, at)
     other = mesh.other_flanks.contacts(at)
-    arm = jnp.abs(along(other.normal, loaded))
-    return stiffness, found, touch(other.gap, arm, other.active)
+    arm = jnp.abs(contact_velocity(other.normal, loaded))
+    return stiffness, found, touching_approach(other.gap, arm, other.active)
 
 
 @pytest.mark.whole
@@ -368,7 +368,7 @@ def test_roundings_lean_to_the_radius(drive, at):
     np.testing.assert_array_equal(part[~active], 0.0)
     np.testing.assert_allclose(part[active] / across[active], 1.0 / across[active].max())
     # The arm of the flexspline says the same, but for the place of the contact along the radius.
-    arm = np.abs(along(at.normal, jnp.asarray([0.0, 1.0, 0.0])))
+    arm = np.abs(contact_velocity(at.normal, jnp.asarray([0.0, 1.0, 0.0])))
     touching = active & (np.asarray(at.gap) < 2e-6)
     np.testing.assert_allclose(part[touching], arm[touching] / arm[touching].max(), atol=0.03)
 

@@ -12,7 +12,7 @@ from pitchpoint.cases.worn import gears_digest
 from pitchpoint.errors import InputError
 from pitchpoint.results.by_stage import by_stage
 from pitchpoint.results.store import dataset, save
-from pitchpoint.runs.run import describe, load_case
+from pitchpoint.runs.run import load_case, uncomputed_manifests
 
 TABLES = {
     "lubricant": {"name": "pao-vg-150"},
@@ -191,7 +191,7 @@ def test_wrong_worn_sets_are_told_with_their_key(kept: str, tree: Any, key: str,
 
 
 def test_a_record_tells_the_worn_flanks_of_a_stage_by_what_the_file_holds(kept: str) -> None:
-    (manifest,) = describe(in_row(PAIR, {"gears": SET, "worn": {"file": kept}}))
+    (manifest,) = uncomputed_manifests(in_row(PAIR, {"gears": SET, "worn": {"file": kept}}))
     told = {row["key"]: row["value"] for row in manifest["inputs"] if ".worn." in row["key"]}
     assert told["2.worn.file"] == kept
     assert len(told["2.worn.digest"]) == 64

@@ -25,12 +25,12 @@ from battery_families import (
 )
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.efficiency.drag import Drag, at_rest, resistance
 from pitchpoint.efficiency.quasi_static import Operation, state
 from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import torques_at_rest
-from pitchpoint.gears.pairs import ACTION, TURN, touching, way
+from pitchpoint.gears.pairs import ACTION, TURN, touching, way_of_pairs
 
 
 @eqx.filter_jit
@@ -130,7 +130,7 @@ def test_contacts_have_the_shape_of_the_family(family):
 
 def test_sliding_is_the_difference_of_the_surface_speeds(family):
     motion = family.told.motion
-    first, second = (np.asarray(along(arms, motion)) for arms in family.at.surface)
+    first, second = (np.asarray(contact_velocity(arms, motion)) for arms in family.at.surface)
     np.testing.assert_allclose(first, dot(motion, family.at.surface[0]), rtol=1e-14)
     slip, roll = dot(motion, family.at.slip_arm), dot(motion, family.at.roll_arm)
     # Coordinates may turn a hundred times as fast against each other as the contact sees.
@@ -431,12 +431,12 @@ def test_pairs_go_on_where_a_period_ends(family):
         leaves_of(contacts_of(family.mesh, jnp.asarray(0.0 * INSIDE + at)))
         for at in (1.0 - near, near)
     )
-    counted = ("path", "flank") if way(family.mesh) is TURN else ()
+    counted = ("path", "flank") if way_of_pairs(family.mesh) is TURN else ()
     names = ("path", "curvature", "surface", "normal", "flank", "gap", "weight", "width")
     last, first = (np.argwhere(one["active"][..., 0]) for one in (end, start))
     distance = np.linalg.norm(points(end, last)[:, :, None] - points(start, first)[:, None], axis=0)
     then = [distance[number].argmin() for number in range(len(last))]
-    if way(family.mesh) is ACTION:
+    if way_of_pairs(family.mesh) is ACTION:
         then = [int(np.flatnonzero((first == k + np.array([1, 0])).all(axis=1))[0]) for k in last]
     goes_on = distance[np.arange(len(last)), then] < 1e-7
     # At both ends of the window of a strain wave gear a tooth comes and goes without load.

@@ -15,7 +15,7 @@ from sound import quick_first
 from strain_wave_positions import drive
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -166,8 +166,8 @@ def test_turning_everything_together_moves_no_contact(passing):
 
 def test_teeth_that_touch_close_by_themselves_and_the_others_after_projection(passing):
     motion, active = passing.motion, passing.found.active
-    size = np.asarray(along(np.abs(passing.raw.normal), np.abs(motion)))[active]
-    rigid = np.abs(along(passing.raw.normal, motion))[active] / size
+    size = np.asarray(contact_velocity(np.abs(passing.raw.normal), np.abs(motion)))[active]
+    rigid = np.abs(contact_velocity(passing.raw.normal, motion))[active] / size
     touches = passing.found.gap[active] < 1e-12
     assert 2 <= touches.sum() < 0.9 * touches.size, "both kinds of teeth are needed"
     # Flanks whose curvature jumps where they touch have no one normal to the accuracy of a table.
@@ -175,7 +175,7 @@ def test_teeth_that_touch_close_by_themselves_and_the_others_after_projection(pa
     assert rigid[touches & smooth].max() < 1e-5
     assert np.median(rigid[touches & smooth]) < 1e-7
     assert rigid[~touches].max() > 1e-3
-    projected = np.abs(along(passing.found.normal, motion))[active] / size
+    projected = np.abs(contact_velocity(passing.found.normal, motion))[active] / size
     assert projected.max() < 1e-13
 
 

@@ -28,7 +28,7 @@ from pitchpoint.gears import table as every
 from pitchpoint.gears.table import MODULE
 from pitchpoint.input.kinds import COEFFICIENT
 from pitchpoint.input.tables import Table
-from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.conditions import law_arguments
 
 
 def bad_keys() -> Iterator[Bad]:
@@ -81,7 +81,7 @@ def bad_sweeps() -> Iterator[Bad]:
 def bad_parameters() -> Iterator[Bad]:
     path = ("models", "friction")
     for law in FRICTION.values():
-        own = arguments(law.function)[1]
+        own = law_arguments(law.function)[1]
         table = {"name": law.name, "qqqq": 1}
         words = ("no parameter", law.name, *own)
         yield Bad(f"{law.name} unknown", path, table, words, "models.friction.qqqq")

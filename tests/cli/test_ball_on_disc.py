@@ -12,11 +12,11 @@ from pages import payload
 
 from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.errors import InputError
-from pitchpoint.runs.catalogue import entries, figures
-from pitchpoint.runs.run import Outcome, describe, run
+from pitchpoint.runs.catalogue import entries, figures_by_law
+from pitchpoint.runs.run import Outcome, run_case, uncomputed_manifests
 from pitchpoint.views.registry import SECTIONS
-from pitchpoint.views.report import render
-from pitchpoint.views.sections.answer import summary
+from pitchpoint.views.report import report_page
+from pitchpoint.views.sections.answer import operation_summary
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ball_on_disc.toml"
 OIL = {
@@ -135,7 +135,7 @@ def test_a_barrel_touches_in_a_wider_ellipse(outcome: Outcome) -> None:
 
 
 def test_tables_and_json_tell_the_contact(outcome: Outcome) -> None:
-    (row,) = summary(outcome).rows
+    (row,) = operation_summary(outcome).rows
     assert [*row][:4] == [
         "friction law",
         "film thickness [µm]",
@@ -143,8 +143,10 @@ def test_tables_and_json_tell_the_contact(outcome: Outcome) -> None:
         "largest Hertz pressure [MPa]",
     ]
     assert row["largest Hertz pressure [MPa]"] == "1110"
-    assert summary(outcome).line == "No power is transmitted: the efficiency is undefined."
-    told = figures(outcome)
+    assert (
+        operation_summary(outcome).line == "No power is transmitted: the efficiency is undefined."
+    )
+    told = figures_by_law(outcome)
     assert told["back_driving"] == {}
     assert told["operation"]["constant"]["film_thickness"] == pytest.approx(0.23209e-6, rel=1e-3)
     assert told["studies"]["force"]["constant"]["pressure"][1] == pytest.approx(1.1096e9, rel=1e-4)
@@ -155,7 +157,7 @@ def test_tables_and_json_tell_the_contact(outcome: Outcome) -> None:
 
 
 def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = report_page({"default": outcome})
     body = page[page.index("<main>") : page.index("</main>")].replace("\u00a0", " ")
     assert "disc drives at 240 rpm, ball carries 50 N, oil at 40 °C" in body
     assert "<dt>largest Hertz pressure</dt><dd><strong>1110 MPa</strong>" in body
@@ -165,7 +167,7 @@ def test_the_report_shows_the_contact_and_leaves_out_what_gears_have(outcome: Ou
     assert "Loss map, Four quadrants, Duty cycle (nothing is transmitted by a test rig)" in absent
     for heading in ("base pitch", "back-driving", "Loss map", "Load sharing</dt>", "None"):
         assert heading not in body, heading
-    assert render({"one": outcome, "two": outcome})
+    assert report_page({"one": outcome, "two": outcome})
 
 
 LINE = "holds for line contacts, and these touch in an ellipse; choose one of"
@@ -207,18 +209,18 @@ BAD: dict[str, tuple[object, str]] = {
 def test_bad_input_is_one_sentence(key: str) -> None:
     value, told = BAD[key]
     with pytest.raises(InputError) as error:
-        describe(str(EXAMPLE), settings={key: value})
+        uncomputed_manifests(str(EXAMPLE), settings={key: value})
     assert str(error.value) == f"{EXAMPLE.name}: {key}: {told}"
 
 
 def test_gears_take_no_force_and_no_film_of_an_ellipse() -> None:
     pair = str(EXAMPLE.with_name("pair_23_61.toml"))
     with pytest.raises(InputError, match=r"operation.force: gears carry a torque; give torque in"):
-        describe(pair, settings={"operation.force": "50 N"})
+        uncomputed_manifests(pair, settings={"operation.force": "50 N"})
     with pytest.raises(
         InputError, match=r"models.film_thickness: 'hamrock_dowson_1977' holds for ell"
     ):
-        describe(pair, settings={"models.film_thickness": "hamrock_dowson_1977"})
+        uncomputed_manifests(pair, settings={"models.film_thickness": "hamrock_dowson_1977"})
 
 
 def test_a_law_of_ones_own_for_lines_is_refused() -> None:
@@ -228,13 +230,13 @@ def test_a_law_of_ones_own_for_lines_is_refused() -> None:
     with pytest.raises(
         InputError, match="'my_law' holds for line contacts, and these touch in an ell"
     ):
-        run(str(EXAMPLE), friction=my_law)
+        run_case(str(EXAMPLE), friction=my_law)
 
 
 def test_a_contact_narrower_than_long_is_told() -> None:
-    (manifest,) = describe(str(EXAMPLE), settings={"gears.transverse_radius": "5 mm"})
+    (manifest,) = uncomputed_manifests(str(EXAMPLE), settings={"gears.transverse_radius": "5 mm"})
     assert any("narrower across the track" in text for text in manifest["warnings"])
-    (usual,) = describe(str(EXAMPLE))
+    (usual,) = uncomputed_manifests(str(EXAMPLE))
     assert usual["warnings"] == []
 
 

@@ -1,4 +1,4 @@
-"""What stands on a bench is what `run` says of each case."""
+"""What stands on a bench is what `run_case` says of each case."""
 
 import json
 import sys
@@ -9,7 +9,7 @@ import pytest
 import pitchpoint as pp
 from pitchpoint import cli
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 
 TABLES = {
     "lubricant": {"name": "pao-vg-150"},
@@ -77,7 +77,7 @@ READ = ["operation", "back_driving", "torsion", "running", "reflected", "inspect
 def parts_of(case):
     built = pp.load_case(case)
     there = [name for name in READ if ANALYSES[name].why_not(built) is None]
-    return run(case, analyses=there)["default"].parts
+    return run_case(case, analyses=there)["default"].parts
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ def test_figures_of_a_bench_are_those_of_the_runs(name):
     torsion = parts.get("torsion")
     if torsion is None:
         stiff = {"models.load_sharing": "from_stiffness"}
-        torsion = run(case, analyses=["torsion"], settings=stiff)["default"].parts["torsion"]
+        torsion = run_case(case, analyses=["torsion"], settings=stiff)["default"].parts["torsion"]
         assert any("from_stiffness" in remark for remark in drive.remarks)
     expected["torsional_stiffness"] = torsion["torsional_stiffness"].sel(torque=60.0).item()
     if "running" in parts:
@@ -129,7 +129,9 @@ def test_figures_of_a_bench_are_those_of_the_runs(name):
     for figure, value in expected.items():
         assert figures[figure] == pytest.approx(value, rel=1e-9, abs=1e-15), figure
     tenth = {"operation.torque": "6 N m"}
-    at_tenth = run(case, analyses=["operation", "back_driving"], settings=tenth)["default"].parts
+    at_tenth = run_case(case, analyses=["operation", "back_driving"], settings=tenth)[
+        "default"
+    ].parts
     for figure, part in (
         ("efficiency_tenth", "operation"),
         ("back_efficiency_tenth", "back_driving"),

@@ -13,7 +13,7 @@ from sound import PAIR
 from pitchpoint import cli
 from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.runs import run
-from pitchpoint.runs.check import check
+from pitchpoint.runs.check import check_case
 from pitchpoint.runs.run import STRENGTH as RATED
 from pitchpoint.runs.run import load_case
 
@@ -260,7 +260,7 @@ def test_what_belongs_to_a_result_is_no_case(told: Run, case: str, sentence: str
         Path(name).parent.mkdir(parents=True, exist_ok=True)
         Path(name).touch()
     with pytest.raises(InputError) as caught:
-        check(case)
+        check_case(case)
     assert sentence in str(caught.value)
 
 

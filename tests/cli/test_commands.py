@@ -19,9 +19,9 @@ from called import TINY, Told
 from pitchpoint.analyses import studies
 from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.runs import run as running
-from pitchpoint.runs.run import open_result
+from pitchpoint.runs.run import open_outcomes
 from pitchpoint.views import show
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 
 PARTS = {
     "teeth",
@@ -47,7 +47,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Results of the tiny case, computed once; tests that change them take a copy."""
     folder = tmp_path_factory.mktemp("finished")
     (folder / "tiny.toml").write_text(TINY)
-    running.run(str(folder / "tiny.toml"), folder=folder / "out")
+    running.run_case(str(folder / "tiny.toml"), folder=folder / "out")
     return folder / "out"
 
 
@@ -57,7 +57,7 @@ def repeated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     folder = tmp_path_factory.mktemp("repeated")
     (case := folder / "tiny.toml").write_text(TINY)
     sweep = Sweep(key="operation.temperature", start="50 degF", stop="60 degC", count=2)
-    running.run(
+    running.run_case(
         str(case),
         folder=folder / "out",
         settings={"operation.speed": "1234.5678 rpm"},
@@ -66,7 +66,7 @@ def repeated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     case.unlink()
     (record := folder / "moved" / "joint.json").parent.mkdir()
     (folder / "out" / "default" / "manifest.json").rename(record)
-    running.run(str(record), folder=folder / "again")
+    running.run_case(str(record), folder=folder / "again")
     shutil.copy(record, folder / "out" / "default" / "manifest.json")
     return folder / "out", folder / "again"
 
@@ -156,7 +156,7 @@ def test_run_leaves_results_that_are_not_computed_twice(
     assert figures["studies"]["smooth"]["xu_2007"]["mean_loss"] > 0.0
     made = times(tmp_path / "results" / "tiny")
     assert set(made) == PARTS | {"study_speed", "study_smooth"}
-    outcome = open_result(tmp_path / "results" / "tiny")["default"]
+    outcome = open_outcomes(tmp_path / "results" / "tiny")["default"]
     assert outcome.manifest["finished"]
     assert outcome.parts["operation"]["mean_efficiency"].attrs["units"] == "1"
 
@@ -177,7 +177,7 @@ def test_run_leaves_results_that_are_not_computed_twice(
 
 
 def test_every_part_says_what_became_of_its_solves(repeated: tuple[Path, Path]) -> None:
-    (outcome,) = running.open_result(repeated[0]).values()
+    (outcome,) = running.open_outcomes(repeated[0]).values()
     solves = {name: json.loads(data.attrs["solve"]) for name, data in outcome.parts.items()}
     for name, told in solves.items():
         assert told.keys() == {"code", "sentence", "residual", "iterations"}
@@ -220,7 +220,7 @@ def test_the_folder_of_a_result_repeats_it_bit_for_bit(
 
 
 def test_the_report_of_a_repeated_result_is_the_same(repeated: tuple[Path, Path]) -> None:
-    one, other = (render(open_result(folder)) for folder in repeated)
+    one, other = (report_page(open_outcomes(folder)) for folder in repeated)
     assert one == other
     assert "<code>operation.speed</code> = 1234.57 rpm" in one.replace("\u00a0", " ")
 
@@ -252,7 +252,7 @@ def test_units_by_choice_are_kept_and_compute_nothing_anew(
     assert re.search(r"Input +\S+ N cm", told.out)
     assert re.search(r"Loss +\S+ mW", told.out)
     assert times(folder) == made
-    kept = open_result(folder)["default"]
+    kept = open_outcomes(folder)["default"]
     assert kept.parts["operation"]["mean_input_torque"].attrs["units"] == "N m"
     assert [row["value"] for row in kept.manifest["inputs"] if row["table"] == "output"] == [
         {"torque": "N cm", "power": "mW"}
@@ -368,13 +368,13 @@ def test_a_mesh_that_friction_locks(pitchpoint: Callable[..., Told], tiny: Path)
 
 
 def test_points_of_a_study_out_of_the_range_of_their_law_are_marked(finished: Path) -> None:
-    outcomes = open_result(str(finished))
+    outcomes = open_outcomes(str(finished))
     study = outcomes["default"].parts["study_speed"]
     assert study["extrapolated"].sel(law="xu_2007").values.all()  # films below the roughness
     assert not study["extrapolated"].sel(law="frictionless").values.any()
     smooth = study_of_one_point = outcomes["default"].parts["study_smooth"]
     assert study_of_one_point["extrapolated"].shape == smooth["mean_loss"].shape
-    page = render(outcomes)
+    page = report_page(outcomes)
     efficiency = show.quantity(
         "mean_efficiency", float(smooth["mean_efficiency"][0, 0]), with_unit=False
     )
@@ -448,7 +448,7 @@ def test_interrupted_runs_go_on_where_they_were(
     assert told.complaint.startswith("interrupted: ")
     assert "finished parts are in out" in told.complaint
     assert "the same command goes on from there" in told.complaint
-    outcome = open_result(tmp_path / "out")["default"]
+    outcome = open_outcomes(tmp_path / "out")["default"]
     assert not outcome.manifest["finished"]
     assert {"teeth", "cycle", "operation", "laws", "study_speed"} <= set(outcome.parts)
     assert not list(tmp_path.glob("out/default/.*"))
@@ -456,7 +456,7 @@ def test_interrupted_runs_go_on_where_they_were(
     assert [name for name in kept if ".0" in name]
 
     killed_after_another_piece(tmp_path, *command)
-    open_result(tmp_path / "out")
+    open_outcomes(tmp_path / "out")
     killed = times(tmp_path / "out")
     assert {name: killed[name] for name in kept} == kept
 

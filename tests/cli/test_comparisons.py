@@ -13,7 +13,7 @@ from called import TINY, Told
 
 from pitchpoint.materials import lubricants
 from pitchpoint.runs import run as running
-from pitchpoint.runs.run import describe, open_result
+from pitchpoint.runs.run import open_outcomes, uncomputed_manifests
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 COLUMNS = ["quantity", "where", "printed", "computed", "tolerance", "kind", "verdict", "reason"]
@@ -115,7 +115,7 @@ def test_the_examples_are_short() -> None:
     ],
 )
 def test_every_example_is_sound(path: Path) -> None:
-    (manifest,) = describe(str(path))
+    (manifest,) = uncomputed_manifests(str(path))
     told = " ".join(manifest["warnings"])
     undercut = ("pair_12_120_undercut", "pair_17_17", "planetary_industrial")
     assert ("undercut" in told) == (path.stem in undercut)
@@ -150,7 +150,7 @@ def test_pairs_that_no_paper_holds(
     operation = told.json["default"]["operation"]["iso_tr_14179_2"]
     assert 0.9 < operation["mean_efficiency"] < 1.0
     assert any(text.startswith(warning) for text in [*told.json["default"]["warnings"], ""])
-    parts = open_result(tmp_path / "out")["default"].parts
+    parts = open_outcomes(tmp_path / "out")["default"].parts
     found = float(parts["operation"]["contact_ratio"].values[0, 0])
     gears = tomllib.loads((EXAMPLES / f"{name}.toml").read_text("utf-8"))["gears"]
     between_tips = contact_ratio(parts["teeth"], gears["teeth"])

@@ -21,9 +21,9 @@ from pitchpoint.errors import InputError
 from pitchpoint.exports.files import FORMATS, export
 from pitchpoint.exports.tables import sheets
 from pitchpoint.results.variable import dimensionless
-from pitchpoint.runs.designs import MainFigure, as_json, designs, main_results, wanted
+from pitchpoint.runs.designs import MainFigure, as_json, designs, main_results, resolved_reference
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import Outcome, Progress, open_result, run, run_variant
+from pitchpoint.runs.run import Outcome, Progress, open_outcomes, run_case, run_variant
 from pitchpoint.views import show
 from pitchpoint.views.designs import (
     differing,
@@ -33,7 +33,7 @@ from pitchpoint.views.designs import (
     result_table,
 )
 from pitchpoint.views.designs_screen import COMPARED_LINES, designs_screen
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 
 PAIR = (
     f'title = "First of two"\n{sound.PAIR}'
@@ -92,7 +92,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("designs")
     for name, text in (("pair", PAIR), ("ball", BALL)):
         (folder / f"{name}.toml").write_text(text)
-        run(str(folder / f"{name}.toml"), folder=folder / "out" / name)
+        run_case(str(folder / f"{name}.toml"), folder=folder / "out" / name)
     return folder
 
 
@@ -105,10 +105,12 @@ def compared(folder: Path) -> Outcomes:
 def test_what_a_reference_means(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     Path("a@b.toml").write_text(BALL)
-    assert wanted("a@b.toml").variant is None
-    assert wanted("out/pair@worn") == wanted("out/pair").__class__("out/pair", "worn")
-    assert wanted("out/pair/worn") == wanted("out/pair@worn")
-    assert wanted("out/pair").variant is None
+    assert resolved_reference("a@b.toml").variant is None
+    assert resolved_reference("out/pair@worn") == resolved_reference("out/pair").__class__(
+        "out/pair", "worn"
+    )
+    assert resolved_reference("out/pair/worn") == resolved_reference("out/pair@worn")
+    assert resolved_reference("out/pair").variant is None
     assert [*designs(["out/pair@worn", "out/ball"])] == ["pair@worn", "ball"]
     assert [*designs(["out/pair"])] == ["pair@new", "pair@worn"]
     for references, words in (
@@ -170,7 +172,7 @@ def test_differences_are_those_of_the_results(compared: Outcomes) -> None:
     data = [one.parts["operation"] for one in compared.values()]
     efficiency = [100.0 * float(one["mean_efficiency"][0, 0]) for one in data]
     told = rows["mean efficiency (xu_2007) [%]"]
-    assert told[:2] == tuple(show.number(value) for value in efficiency)
+    assert told[:2] == tuple(show.number_text(value) for value in efficiency)
     assert told[2] == f"−{abs(efficiency[1] - efficiency[0]):.2f} points"
     pressure = [float(one.parts["cycle"]["pressure"].max()) / 1e6 for one in compared.values()]
     figure = next(one for one in main_results(compared) if one.name == "pressure")
@@ -213,7 +215,7 @@ def test_the_first_screen_tells_what_differs_in_the_answer(compared: Outcomes) -
     assert told[0] == "pair@worn against pair@new"
     (loss,) = (line for line in told if line.startswith("loss [W] "))
     losses = [float(one.parts["operation"]["mean_loss"][0, 0]) for one in compared.values()]
-    assert loss.split()[2:4] == [show.number(value) for value in losses]
+    assert loss.split()[2:4] == [show.number_text(value) for value in losses]
     assert loss.endswith(f"(+{100.0 * (losses[1] / losses[0] - 1.0):.1f} %)")
     assert not any(line.startswith("stress of flanks") for line in told)
     assert re.search(r"The same in all: stress of flanks [\d.]+ MPa; ", " ".join(told))
@@ -280,10 +282,10 @@ def test_designs_of_other_families(folder: Path) -> None:
     assert "share no friction law" in law_words(outcomes)
     assert rows["mean efficiency [%]"][1:] == ("–", "–")
     assert "–" not in rows["largest Hertz pressure [MPa]"]
-    page = render(outcomes, designs=True)
+    page = report_page(outcomes, designs=True)
     assert "<h1>pair@new · ball</h1>" in page
     assert page.index("Designs beside each other") < page.index("The answer")
-    assert "Designs beside each other" not in render(outcomes)
+    assert "Designs beside each other" not in report_page(outcomes)
 
 
 def test_the_command(
@@ -463,7 +465,7 @@ def test_open(
 @pytest.fixture(scope="module")
 def written(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("export")
-    export(open_result(folder / "out" / "pair"), out, [*FORMATS])
+    export(open_outcomes(folder / "out" / "pair"), out, [*FORMATS])
     return out / "new"
 
 
@@ -510,7 +512,7 @@ def test_the_readme_says_what_every_column_is(written: Path) -> None:
 def test_si_and_what_cannot_be_written(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    outcome = open_result(folder / "out" / "ball")["default"]
+    outcome = open_outcomes(folder / "out" / "ball")["default"]
     operation = next(one for one in sheets(outcome, si=True) if one.name == "operation")
     assert "pressure [Pa]" in operation.frame
     with pytest.raises(InputError, match="give one or several of --csv, --mat, --json, --xlsx"):

@@ -33,7 +33,7 @@ from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset, save
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
-from pitchpoint.runs.designs import wanted
+from pitchpoint.runs.designs import resolved_reference
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.layouts import layout_of
 from pitchpoint.runs.optimum_task import OptimiserTask
@@ -376,10 +376,10 @@ def test_a_command(line: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> 
     def prepare(
         case: str, *, folder: Path, progress: object, overwrite: bool, **options: Any
     ) -> dict[str, Any]:
-        laid_out.extend(run.describe(case, **options))
+        laid_out.extend(run.uncomputed_manifests(case, **options))
         return {}
 
-    monkeypatch.setattr(run, "run", prepare)
+    monkeypatch.setattr(run, "run_case", prepare)
     monkeypatch.setattr(cli, "_write_report", lambda outcomes, folder: None)
     monkeypatch.setattr(cli, "_first_screen", lambda outcomes, report, tables: None)
     program, *arguments = shlex.split(line)
@@ -431,9 +431,12 @@ def test_designs_that_are_studied(line: str, folder: Path, monkeypatch: pytest.M
 def test_designs_that_are_compared(line: str, folder: Path) -> None:
     program, command, *references = shlex.split(line.partition(" -o ")[0])
     assert (program, command) == (".venv/bin/pitchpoint", "compare")
-    found = [wanted(one) for one in references]
+    found = [resolved_reference(one) for one in references]
     assert [one.variant for one in found] == [None, "physical"]
-    assert all(run.describe(one.case, only=[one.variant] if one.variant else []) for one in found)
+    assert all(
+        run.uncomputed_manifests(one.case, only=[one.variant] if one.variant else [])
+        for one in found
+    )
 
 
 @pytest.mark.parametrize("line", SIZED)
@@ -473,7 +476,7 @@ def test_a_page_with_sliders(line: str, folder: Path, monkeypatch: pytest.Monkey
 
 @pytest.mark.parametrize("sweep", re.findall(r"`--sweep (\S+=\S+)`", PAGES["guide/pairs.md"]))
 def test_a_sweep_in_the_text(sweep: str, folder: Path) -> None:
-    assert run.describe("pair.toml", studies=cli._studies([sweep]))
+    assert run.uncomputed_manifests("pair.toml", studies=cli._studies([sweep]))
 
 
 def ran(page: str, holding: str) -> dict[str, Any]:

@@ -16,13 +16,13 @@ from pitchpoint.analyses.four_quadrants import table_of
 from pitchpoint.analyses.registry import DUTY as DUTY_CYCLE
 from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.document import read
+from pitchpoint.cases.document import read_tables
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import apart, doubts_of
+from pitchpoint.doubts import doubts_of, ranked_doubts
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
 from pitchpoint.runs.jobs import chosen_jobs, jobs
-from pitchpoint.runs.run import Outcome, keep
+from pitchpoint.runs.run import Outcome, write_results
 from pitchpoint.views.registry import DUTY as DUTY_SECTION
 from pitchpoint.views.sections.duty import actuator_points, operating_points
 
@@ -35,7 +35,7 @@ def moving() -> tuple[Ready, Outcome]:
 @pytest.fixture(scope="module")
 def folder(moving: tuple[Ready, Outcome], tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("result")
-    keep({"default": moving[1]}, {"default": variant(PAIR + MOVING)}, made)
+    write_results({"default": moving[1]}, {"default": variant(PAIR + MOVING)}, made)
     return made
 
 
@@ -101,7 +101,7 @@ def on_duty(folder: Path, steps: str = STEPS, more: str = "", changed: str = PAI
     """The pair with a duty cycle beside its case file."""
     (folder / "cycle.csv").write_text(CYCLE + steps)
     (folder / "pair.toml").write_text(f'title = "a joint"\n{changed}{MOVING}{DUTY}{more}')
-    return Variant(read(folder / "pair.toml"), "pair.toml", "default")
+    return Variant(read_tables(folder / "pair.toml"), "pair.toml", "default")
 
 
 def test_a_run_answers_with_its_duty_cycle(
@@ -209,16 +209,16 @@ def test_heat_that_runs_away_or_is_too_much_is_told_first(
     moving: tuple[Ready, Outcome], tmp_path: Path
 ) -> None:
     away = heated(moving, tmp_path, "1e6 K/W", "45 degC")
-    (sentence,) = apart(doubts_of(away.attrs))["implausible"]
+    (sentence,) = ranked_doubts(doubts_of(away.attrs))["implausible"]
     assert "there is no steady temperature" in sentence and "first at gears" in sentence
     assert away.attrs["first_to_fail"] == "heat of gears" and float(away["shortest_life"]) == 0.0
     assert "body_temperature" not in away and float(away["lost_energy"]) > 0.0
     hot = heated(moving, tmp_path, "0.01 K/W", "46 degC")
-    (sentence,) = apart(doubts_of(hot.attrs))["implausible"]
+    (sentence,) = ranked_doubts(doubts_of(hot.attrs))["implausible"]
     hottest = float(hot["body_temperature"].max()) - 273.15
     assert f"gears gets {hottest:.4g} degC" in sentence and "bears 45 degC" in sentence
     cool = heated(moving, tmp_path, "0.01 K/W", "42 degC")
-    assert not apart(doubts_of(cool.attrs))["implausible"]
+    assert not ranked_doubts(doubts_of(cool.attrs))["implausible"]
 
 
 @pytest.mark.parametrize(
@@ -253,7 +253,7 @@ def test_oil_beyond_the_map_does_not_end_the_run(
 def test_a_law_of_a_duty_cycle_is_one_of_the_case(tmp_path: Path) -> None:
     made = on_duty(tmp_path)
     settings = {"duty.law": "xu_2006"}
-    changed = Variant(read(tmp_path / "pair.toml"), "pair.toml", "default", settings)
+    changed = Variant(read_tables(tmp_path / "pair.toml"), "pair.toml", "default", settings)
     with pytest.raises(InputError, match=r'duty.law: "xu_2006" is no .*did you mean xu_2007'):
         jobs(changed, {})
     assert len(jobs(made, {})) > 0

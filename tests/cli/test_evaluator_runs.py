@@ -32,7 +32,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import Outcome, keep, open_result
+from pitchpoint.runs.run import Outcome, open_outcomes, write_results
 
 SIZING = Path(__file__).parents[2] / "docs" / "guide" / "sizing.md"
 
@@ -50,7 +50,7 @@ def locking() -> tuple[Ready, Outcome]:
 @pytest.fixture(scope="module")
 def folder(moving: tuple[Ready, Outcome], tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("result")
-    keep({"default": moving[1]}, {"default": variant(PAIR + MOVING)}, made)
+    write_results({"default": moving[1]}, {"default": variant(PAIR + MOVING)}, made)
     return made
 
 
@@ -275,7 +275,7 @@ def test_a_result_without_the_map(
 ) -> None:
     manifest, parts = moving[1].manifest, {"running": moving[1].parts["running"]}
     bare = Outcome({**manifest, "parts": ["running"]}, parts)
-    keep({"default": bare}, {"default": variant(PAIR + MOVING)}, tmp_path / "other")
+    write_results({"default": bare}, {"default": variant(PAIR + MOVING)}, tmp_path / "other")
     assert command("export", tmp_path / "other", "--evaluator") == 2
     told = capsys.readouterr().err
     assert "the result has no loss map of the output" in told
@@ -290,7 +290,7 @@ def test_a_result_without_the_map(
     work = jobs(Variant(plain, "pair.toml", "default", {key: int(value)}), {})
     assert FOUR_QUADRANTS.name in [job.name for job in work]
     assert (
-        open_result(folder)["default"].parts["four_quadrants"].attrs["title"]
+        open_outcomes(folder)["default"].parts["four_quadrants"].attrs["title"]
         == FOUR_QUADRANTS.title
     )
 

@@ -15,15 +15,15 @@ from sound import SMOOTH, quick_first
 from pitchpoint import cli
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.keys import quantity_at
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.study_tables import Sweep
 from pitchpoint.cases.validation import validate
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.runs import explore as exploring
 from pitchpoint.runs.case import Case
-from pitchpoint.runs.explore import Explored, explore, usual
-from pitchpoint.runs.run import Outcome, run
+from pitchpoint.runs.explore import Explored, explore, usual_keys
+from pitchpoint.runs.run import Outcome, run_case
 from pitchpoint.views import explorer, show
 from pitchpoint.views.explorer import Reader, write_explorer
 from pitchpoint.views.report import packed
@@ -103,7 +103,7 @@ def held_by(page: Path) -> dict[str, Any]:
 def computed(folder: Path, **changes: str) -> Outcome:
     """The case run at one place, without what else it has."""
     settings = {key.replace("__", "."): value for key, value in changes.items()}
-    return run(str(folder / "pair.toml"), settings=settings)["default"]
+    return run_case(str(folder / "pair.toml"), settings=settings)["default"]
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +124,7 @@ def test_at_a_point_of_the_grid_figures_are_those_of_a_run(
         for law in range(2):
             found = figure(held, name)["values"][law][0 * 4 + 0 * 2 + 1]
             value = float(data[name].values[law, 0])
-            assert show.quantity(name, value, with_unit=False, of=data) == show.number(found)
+            assert show.quantity(name, value, with_unit=False, of=data) == show.number_text(found)
 
 
 def test_the_value_of_the_case_is_a_point_of_the_grid(folder: Path) -> None:
@@ -234,7 +234,7 @@ def test_errors_are_told(page: Path) -> None:
 
 
 def test_a_pair_has_load_speed_and_profile_shift_on_sliders(folder: Path) -> None:
-    shift, torque, speed = usual(Case(str(folder / "pair.toml")).held[0])
+    shift, torque, speed = usual_keys(Case(str(folder / "pair.toml")).held[0])
     assert (shift.key, torque.key, speed.key) == (
         "gears.profile_shift.1",
         "operation.torque",
@@ -248,7 +248,7 @@ def test_a_pair_has_load_speed_and_profile_shift_on_sliders(folder: Path) -> Non
 
 @pytest.mark.parametrize("table", TABLES, ids=lambda table: table.__name__)
 def test_every_family_names_a_key_to_explore(table: type[GearsTable]) -> None:
-    name, tree = find(str(sample_of(table)))
+    name, tree = find_case(str(sample_of(table)))
     gears = validate(Document(name, tree)).gears
     assert gears.explored is not None
     key, reach = gears.explored
@@ -344,10 +344,10 @@ def test_all_is_drawn_and_the_console_is_silent(driven: Browser) -> None:
 def test_sliders_change_the_numbers(driven: Browser, held: dict[str, Any]) -> None:
     rows = figure(held, "mean_efficiency")["values"][0]
     assert (
-        driven.run(BIG) == f"{show.number(rows[0b10])} %"
+        driven.run(BIG) == f"{show.number_text(rows[0b10])} %"
     )  # 60 N m and 900 rpm, those of the case
     slide(driven, TORQUE, 30.0)
-    assert driven.run(BIG) == f"{show.number(rows[0])} %"
+    assert driven.run(BIG) == f"{show.number_text(rows[0])} %"
     slide(driven, SPEED, 1350.0)
     assert number(driven.run(BIG)) == pytest.approx(0.5 * (rows[0] + rows[1]), abs=0.0051)
     words = driven.run("document.getElementById('slider-2').getAttribute('aria-valuetext')")
@@ -359,7 +359,7 @@ def test_sliders_change_the_numbers(driven: Browser, held: dict[str, Any]) -> No
     dot = "document.getElementById('over-2').data.at(-1)"
     assert driven.run(f"{dot}.x[0]") == pytest.approx(1350.0, rel=1e-8)  # steps are a trifle short
     driven.run("document.querySelector('[type=reset]').click()")
-    assert driven.wait(f"{BIG} === {f'{show.number(rows[0b10])} %'!r}")
+    assert driven.wait(f"{BIG} === {f'{show.number_text(rows[0b10])} %'!r}")
     assert driven.console == []
 
 
@@ -378,7 +378,7 @@ def test_the_arrow_keys_move_a_slider(driven: Browser) -> None:
 def test_another_law_has_other_numbers(driven: Browser, held: dict[str, Any]) -> None:
     choose = "(m => { m.selectedIndex = 1; m.dispatchEvent(new Event('input', {bubbles: true})) })"
     driven.run(f"{choose}(document.getElementById('law'))")
-    wanted = f"{show.number(figure(held, 'mean_efficiency')['values'][1][2])} %"
+    wanted = f"{show.number_text(figure(held, 'mean_efficiency')['values'][1][2])} %"
     assert driven.wait(f"{BIG} === {wanted!r}")
 
 

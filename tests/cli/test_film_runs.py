@@ -14,8 +14,7 @@ from sound import PAIR
 from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film as solved
-from pitchpoint.analyses.film_contacts import film_model_of, patch_grid_of
-from pitchpoint.analyses.film_contacts import states as states_of
+from pitchpoint.analyses.film_contacts import contact_states, film_model_of, patch_grid_of
 from pitchpoint.analyses.film_cycle import _of_pieces, _of_summits
 from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.registry import ANALYSES
@@ -30,11 +29,11 @@ from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.materials.lubricants import find
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.registry import FILM as SECTION
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.sections.film import film_answer
 
 CASE = f"""{PAIR}
@@ -94,7 +93,7 @@ def test_a_film_carries_the_load_of_the_balance(outcome: Outcome) -> None:
 
 def test_the_film_of_one_contact_is_that_of_the_solver_alone(outcome: Outcome, case: str) -> None:
     data, built = outcome.parts["film"], load_case(case)
-    states = states_of(built)
+    states = contact_states(built)
     at = np.unravel_index(np.argmax(states["line_load"]), states["line_load"].shape)
     contacts = FilmModel(nodes=33).contacts(
         **{
@@ -142,7 +141,7 @@ def test_a_film_that_is_not_found_withholds_the_loss(
 
     honest = solved._films
     monkeypatch.setattr(solved, "_films", lost)
-    outcome = running.run(case)["default"]
+    outcome = running.run_case(case)["default"]
     data = outcome.parts["film"]
     missing = int(data["loaded_contacts"]) - int(data["solved_contacts"])
     assert missing > 0
@@ -151,7 +150,7 @@ def test_a_film_that_is_not_found_withholds_the_loss(
     assert np.isfinite(float(data["smallest_film"]))
     told = " ".join(json.loads(data.attrs["warnings"]))
     assert f"{missing} of {int(data['loaded_contacts'])} loaded contacts have no film" in told
-    assert "loss and efficiency are withheld" in render({"default": outcome})
+    assert "loss and efficiency are withheld" in report_page({"default": outcome})
 
 
 @pytest.mark.whole
@@ -159,7 +158,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
     def run() -> Any:
-        return running.run(case, folder=tmp_path)["default"].parts["film"]
+        return running.run_case(case, folder=tmp_path)["default"].parts["film"]
 
     again, begins = stopped_and_gone_on(solved, run, monkeypatch)
     assert begins == [0, 6, 6]
@@ -168,7 +167,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
 
 
 def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = report_page({"default": outcome})
     for words in (
         '<section id="film"',
         'type="range" data-menu="profile0_film"',
@@ -180,7 +179,7 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     (first, second) = SECTION.screen(outcome)
     assert first.title == "Films"
     assert [row["friction by"] for row in second.rows] == ["films", "constant", "iso_tr_14179_2"]
-    told = figures(outcome)["film"]
+    told = figures_by_law(outcome)["film"]
     assert set(told["film_laws"]) == set(outcome.parts["film"]["film_law"].values)
     assert told["friction_laws"]["constant"]["mean_law_friction"] == pytest.approx(0.05)
 
@@ -197,7 +196,7 @@ def test_nodes_that_are_left_open_are_twice_as_many_beyond_a_load_parameter_of_1
         return variant.built({"operation.speed": f"{speed} rad/s"})
 
     built = at(100.0)
-    design, lanes = built.design, states_of(built)
+    design, lanes = built.design, contact_states(built)
     oil = FilmModel().fluid(design.lubricant, float(built.operation.temperature))
     load, radius, a, b = (
         lanes[name][lanes["loaded"]] for name in ("line_load", "radius", "speed_a", "speed_b")
@@ -218,7 +217,7 @@ def test_nodes_that_are_left_open_are_twice_as_many_beyond_a_load_parameter_of_1
 def test_ellipses_beyond_a_load_parameter_of_100_have_twice_as_many_nodes() -> None:
     """That of a line with the pressure of Hertz's ball, p^3 = 6 F (E'/2)^2/(pi^3 R^2)."""
     built = load_case(BALL)
-    design, lanes, radius = built.design, states_of(built), 9.525e-3
+    design, lanes, radius = built.design, contact_states(built), 9.525e-3
     oil = FilmModel().fluid(design.lubricant, float(built.operation.temperature))
     modulus, speeds = float(design.modulus), float(np.max(lanes["speed_a"] + lanes["speed_b"]))
     pressure = (6.0 * 20.0 * (0.5 * modulus) ** 2 / (np.pi**3 * radius**2)) ** (1.0 / 3.0)
@@ -234,46 +233,46 @@ def test_ellipses_beyond_a_load_parameter_of_100_have_twice_as_many_nodes() -> N
 
 @pytest.mark.whole
 def test_smooth_flanks_have_no_film_ratio(case: str) -> None:
-    outcome = running.run(case, settings={"roughness.ra": "0 um", "film.phases": 3})["default"]
+    outcome = running.run_case(case, settings={"roughness.ra": "0 um", "film.phases": 3})["default"]
     assert np.isinf(outcome.parts["film"]["smallest_lambda"])
     assert float(outcome.parts["film"]["largest_asperity_share"]) == 0.0
-    assert figures(outcome)["film"]["smallest_lambda"] is None
-    assert "lubrication regimes" not in render({"default": outcome})
+    assert figures_by_law(outcome)["film"]["smallest_lambda"] is None
+    assert "lubrication regimes" not in report_page({"default": outcome})
 
 
 @pytest.mark.whole
 def test_assumed_constants_behind_the_load_on_asperities_are_told(case: str) -> None:
     rough = {"roughness.ra": "1.2 um", "film.phases": 3}
-    outcome = running.run(case, settings=rough)["default"]
+    outcome = running.run_case(case, settings=rough)["default"]
     data = outcome.parts["film"]
     assert float(data["largest_asperity_share"]) > 0.05
     part = float(data["mean_boundary_part"] / data["mean_film_friction"])
     words = f"he load on asperities, and {100.0 * part:.0f} % of the friction, rest on assumed "
     assert f"t{words}eta_beta_sigma 0.05 and sigma_over_beta 0.01" in film_answer(outcome)
     assert f"T{words}eta_beta_sigma 0.05 and" in next(SECTION.screen(outcome)).line
-    page = render({"default": outcome}).replace("\u00a0", " ")
+    page = report_page({"default": outcome}).replace("\u00a0", " ")
     assert f"T{words}eta_beta_sigma 0.05 and" in page
-    one = running.run(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
+    one = running.run_case(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
     assert "rest on assumed sigma_over_beta 0.01;" in film_answer(one)
     both = {**rough, "film.eta_beta_sigma": 0.05, "film.sigma_over_beta": 0.01}
-    assert "assumed" not in film_answer(running.run(case, settings=both)["default"])
+    assert "assumed" not in film_answer(running.run_case(case, settings=both)["default"])
 
 
 @pytest.mark.whole
 def test_what_sets_of_summits_differ_in_stands_beside_the_load_on_asperities(case: str) -> None:
     rough = {"roughness.ra": "0.5 um", "film.phases": 3}
-    data = running.run(case, settings=rough)["default"].parts["film"]
+    data = running.run_case(case, settings=rough)["default"].parts["film"]
     textbooks, follows = data["summits_share"].values
     assert textbooks == float(data["largest_asperity_share"]) < follows / 2.0
     assert any("where asperities carry most" in one for one in json.loads(data.attrs["warnings"]))
     chosen = {**rough, "film.summits": "masjedi_khonsari_2012"}
-    stiff = running.run(case, settings=chosen)["default"]
+    stiff = running.run_case(case, settings=chosen)["default"]
     shares = stiff.parts["film"]["summits_share"].values
     assert shares[1] == float(stiff.parts["film"]["largest_asperity_share"]) >= follows
     there = data["asperity_share"].argmax(...)
     assert float(stiff.parts["film"]["asperity_share"][there]) == pytest.approx(follows, rel=1e-6)
     assert f"({100.0 * shares[0]:.4g} % by textbooks, " in film_answer(stiff)
-    measured = running.run(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
+    measured = running.run_case(case, settings={**rough, "film.eta_beta_sigma": 0.06})["default"]
     assert "summits_share" not in measured.parts["film"]
 
 
@@ -290,20 +289,20 @@ def test_sets_of_summits_that_differ_much_are_told() -> None:
 @pytest.mark.whole
 def test_a_largest_pressure_below_that_of_hertz_is_explained(case: str, outcome: Outcome) -> None:
     rough = {"roughness.ra": "3 um", "film.phases": 3, "operation.torque": "20 N m"}
-    one = running.run(case, settings=rough)["default"]
+    one = running.run_case(case, settings=rough)["default"]
     data = one.parts["film"]
     lacks = 1.0 - float(data["largest_film_pressure"]) / float(data["pressure"].max())
     told = (
         f"The largest pressure is {100.0 * lacks:.0f} % below Hertz's: rough flanks spread the load"
     )
     assert lacks > 0.05 and told in next(SECTION.screen(one)).line
-    assert "rough flanks spread the load beyond the dry contact" in render({"default": one})
+    assert "rough flanks spread the load beyond the dry contact" in report_page({"default": one})
     assert float(outcome.parts["film"]["largest_asperity_share"]) > 0.0
     assert "below Hertz's" not in next(SECTION.screen(outcome)).line
 
 
 def test_without_load_there_is_no_film(case: str) -> None:
-    data = running.run(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
+    data = running.run_case(case, settings={"operation.torque": "0 N m"})["default"].parts["film"]
     assert int(data["loaded_contacts"]) == 0
     assert np.isnan(float(data["mean_film_loss"]))
     assert Code.UNLOADED.sentence in data.attrs["solve"]
@@ -390,10 +389,10 @@ def test_heat_that_isothermal_films_leave_out_is_told(outcome: Outcome, case: st
     (mild,) = (text for text in warnings_of(outcome) if "isothermal" in text)
     assert float(mild.partition("up to about ")[2].partition(" K")[0]) < 10.0
     harder = {"operation.torque": "250 N m", "operation.speed": "3000 rpm"}
-    hard = running.run(case, settings=harder)["default"]
+    hard = running.run_case(case, settings=harder)["default"]
     (cold,) = (text for text in warnings_of(hard) if "isothermal" in text)
     estimated = float(cold.partition("up to about ")[2].partition(" K")[0])
-    warm = running.run(case, settings={**harder, "film.thermal": "mean_film"})["default"]
+    warm = running.run_case(case, settings={**harder, "film.thermal": "mean_film"})["default"]
     assert not any("isothermal" in text for text in warnings_of(warm))
     film, flash = (float(warm.parts["film"][f"largest_{one}_rise"]) for one in ("film", "flash"))
     assert 10.0 < film < estimated < 1.5 * film
@@ -403,8 +402,8 @@ def test_heat_that_isothermal_films_leave_out_is_told(outcome: Outcome, case: st
     )
     assert np.nanmax(rise) <= film * (1.0 + 1e-12)
     assert np.nanmax(surfaces) <= flash * (1.0 + 1e-12)
-    assert "Temperatures above the inlet" in render({"default": warm})
-    assert "Temperatures above the inlet" not in render({"default": hard})
+    assert "Temperatures above the inlet" in report_page({"default": warm})
+    assert "Temperatures above the inlet" not in report_page({"default": hard})
     assert "warmer than their inlet" in film_answer(warm)
     assert "warmer than their inlet" not in film_answer(hard)
 
@@ -412,7 +411,7 @@ def test_heat_that_isothermal_films_leave_out_is_told(outcome: Outcome, case: st
 def test_the_thinnest_film_is_named_and_dry_contacts_are_marked(
     outcome: Outcome, case: str
 ) -> None:
-    data, page = outcome.parts["film"], render({"default": outcome})
+    data, page = outcome.parts["film"], report_page({"default": outcome})
     phase, pair, _ = np.unravel_index(np.nanargmin(data["minimum_film"].values), data["load"].shape)
     number = ("I", "II", "III")[int(pair)]
     at = f"{float(data['phase'][phase]) % 1.0:.3f}, pair {number}"
@@ -432,10 +431,10 @@ def warnings_of(outcome: Outcome) -> list[str]:
 @pytest.mark.whole
 def test_films_in_series_yield_as_films_of_more_load_do(case: str) -> None:
     """Virtual work: the torque times the rotation by films is the sum of forces times what films give way."""
-    outcome = running.run(case, settings={"film.in_series": True})["default"]
+    outcome = running.run_case(case, settings={"film.in_series": True})["default"]
     data, built = outcome.parts["film"], load_case(case)
     torque, part = 50.0, 0.01
-    states = states_of(built)
+    states = contact_states(built)
 
     def film(times: float) -> np.ndarray:
         some = {**states, "line_load": times * states["line_load"]}
@@ -462,5 +461,5 @@ def test_films_in_series_yield_as_films_of_more_load_do(case: str) -> None:
 def test_films_in_series_need_a_torque(case: str) -> None:
     settings = {"film.in_series": True, "operation.torque": "0 N m"}
     with pytest.raises(InputError, match="nothing is carried") as told:
-        running.run(case, settings=settings)
+        running.run_case(case, settings=settings)
     assert told.value.key == "film.in_series"

@@ -17,15 +17,15 @@ from pitchpoint.analyses import film_squeeze
 from pitchpoint.analyses.engagement import _around, _shown, course_of
 from pitchpoint.analyses.films import FILM_SQUEEZE
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.analyses.whole_contacts import wholes
+from pitchpoint.analyses.whole_contacts import whole_contacts
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.layout import laid_out
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.registry import FILM_SQUEEZE as SECTION
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.screen import head
 
 SQUEEZE = """
@@ -68,7 +68,7 @@ def outcome(case: str) -> Outcome:
 @pytest.mark.whole
 def test_what_does_not_change_is_steady() -> None:
     given = {"film.time": "squeeze", "film.nodes": 33}
-    data = running.run(BALL, settings=given)["default"].parts["film_squeeze"]
+    data = running.run_case(BALL, settings=given)["default"].parts["film_squeeze"]
     assert int(data["solved_moments"]) == 3
     for name in ("minimum_film", "central_film", "film_pressure"):
         steady = data[f"steady_{name}"].values
@@ -85,7 +85,7 @@ def test_one_pair_is_followed_from_moment_to_moment(outcome: Outcome, case: str)
     way = data["path"].values - float(data["path"][0])
     assert data["time"].values == pytest.approx(way * pitch, abs=1e-12)
     assert np.all(np.diff(data["time"].values) > 0.0)
-    states, at = wholes(built).states, course_of(built).places
+    states, at = whole_contacts(built).states, course_of(built).places
     loads = states["load"][tuple(at.T)]
     assert data["load"].values == pytest.approx(loads)
     assert loads.max() == pytest.approx(states["load"].max(), rel=0.05)
@@ -120,7 +120,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
         return some(built, first, *given, **more)
 
     def run() -> Any:
-        return running.run(case, folder=tmp_path)["default"].parts["film_squeeze"]
+        return running.run_case(case, folder=tmp_path)["default"].parts["film_squeeze"]
 
     some = film_squeeze._some
     monkeypatch.setattr(film_squeeze, "_some", stop)
@@ -145,19 +145,19 @@ def test_a_film_that_is_lost_ends_the_march_and_leaves_steady_ones(
 
     march = film_squeeze.march_patches
     monkeypatch.setattr(film_squeeze, "march_patches", lost)
-    one = running.run(case, settings={"film.moments": 4})["default"]
+    one = running.run_case(case, settings={"film.moments": 4})["default"]
     data = one.parts["film_squeeze"]
     codes = [Code.SOLVED, Code.NOT_CONVERGED, Code.FILM_LOST, Code.FILM_LOST]
     assert data["film_status"].values.tolist() == codes
     assert np.isfinite(data["central_film"].values).tolist() == [True, False, False, False]
     assert np.isfinite(data["steady_central_film"].values).all()
     assert "was lost" in " ".join(json.loads(data.attrs["warnings"]))
-    assert "3 moments of the engagement was not found" in render({"default": one})
+    assert "3 moments of the engagement was not found" in report_page({"default": one})
 
 
 @pytest.mark.whole
 def test_report_screen_and_json_have_the_squeeze(outcome: Outcome) -> None:
-    page = opened(render({"default": outcome}))
+    page = opened(report_page({"default": outcome}))
     for words in (
         '<section id="film_squeeze"',
         "Film over the engagement",
@@ -172,7 +172,7 @@ def test_report_screen_and_json_have_the_squeeze(outcome: Outcome) -> None:
     assert {*map(head, names)} <= printed.rows[0].keys()
     (squeeze,) = SECTION.answer(outcome)
     assert "squeeze makes the film in the middle up to" in squeeze.words
-    told = figures(outcome)["film_squeeze"]
+    told = figures_by_law(outcome)["film_squeeze"]
     assert told["squeeze_change"] == float(outcome.parts["film_squeeze"]["squeeze_change"])
 
 
@@ -196,14 +196,14 @@ def test_what_cannot_be_squeezed_is_told(
     case: str, given: dict[str, Any], key: str, words: str
 ) -> None:
     with pytest.raises(InputError, match=words) as caught:
-        running.run(case, settings=given)
+        running.run_case(case, settings=given)
     assert caught.value.key == key
 
 
 @pytest.mark.whole
 def test_lines_are_followed_while_they_keep_their_length(case: str) -> None:
     built = load_case(case, settings={"gears.helix_angle": "8 deg"})
-    course, states = course_of(built), wholes(built).states
+    course, states = course_of(built), whole_contacts(built).states
     lengths = course.values(states["weight_of_line"])
     assert np.ptp(lengths) < 1e-6 * lengths.max()
     assert np.ptp(states["weight_of_line"][states["loaded"]]) > 0.1 * lengths.max()
@@ -237,6 +237,6 @@ def test_contacts_are_those_that_one_grid_shows(case: str) -> None:
 @pytest.mark.parametrize("moments", [2, 3, 7])
 def test_the_moment_that_carries_most_is_among_few(case: str, moments: int) -> None:
     built = load_case(case, settings={"film.moments": moments})
-    course, loads = course_of(built), wholes(built).states["load"]
+    course, loads = course_of(built), whole_contacts(built).states["load"]
     assert course.times.size == moments
     assert course.values(loads).max() == loads.max()

@@ -16,20 +16,20 @@ from stopped import stopped_and_gone_on
 from pitchpoint.analyses import film_cycle, finite_film
 from pitchpoint.analyses.analysis import silent
 from pitchpoint.analyses.caveats import cold_warning
-from pitchpoint.analyses.film_contacts import states
+from pitchpoint.analyses.film_contacts import contact_states
 from pitchpoint.analyses.films import FILM, FINITE_FILM
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.analyses.whole_contacts import PLACES, one_contact, wholes
+from pitchpoint.analyses.whole_contacts import PLACES, one_contact, whole_contacts
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
-from pitchpoint.views.film_courses import courses
+from pitchpoint.views.film_courses import film_course_panel
 from pitchpoint.views.registry import FINITE_FILM as SECTION
-from pitchpoint.views.report import render
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.report import report_page
+from pitchpoint.views.screen import head, screen_value
 
 MODELS = '[models]\nfriction = { name = "constant", coefficient = 0.05 }\n'
 FINITE = '[film]\nsolver = "finite_line"\nphases = 3\nnodes = 33\n'
@@ -88,7 +88,7 @@ def test_a_contact_is_that_of_the_solver_alone_and_carries_its_load(
     data, built = outcome.parts["finite_film"], load_case(case)
     at = tuple(data["kept_at"].values[0])
     assert float(data["load"].values[at]) == data["load"].values.max()
-    found = solve_patch(one_contact(built, wholes(built).numbers[at]), nodes=33, cells=32)
+    found = solve_patch(one_contact(built, whole_contacts(built).numbers[at]), nodes=33, cells=32)
     film = found.film
     assert float(data["central_film"].values[at]) == pytest.approx(float(film.central_film))
     assert data["near_ends"].values[at] == pytest.approx(film.near_ends)
@@ -119,7 +119,7 @@ def test_lines_without_ends_stand_beside_and_agree_in_the_middle(
 ) -> None:
     data = outcome.parts["finite_film"]
     given = {"film.solver": "line", "film.nodes": 129}
-    lines = running.run(case, settings=given)["default"].parts["film"]
+    lines = running.run_case(case, settings=given)["default"].parts["film"]
     beside = lines["central_film"].values
     known = np.isfinite(beside)
     # Oil begins where that of the patches does, and nearer than a module.
@@ -140,7 +140,7 @@ def test_friction_of_lines_across_the_pitch_line_is_that_of_their_slices(
     heard: list[dict[str, np.ndarray]] = []
     monkeypatch.setattr(film_cycle, "cold_warning", lambda _, run: heard.append(run) or "")
     helical = {"gears.helix_angle": "20 deg"}
-    data = running.run(case, settings=helical)["default"].parts["finite_film"]
+    data = running.run_case(case, settings=helical)["default"].parts["finite_film"]
     friction, beside = data["film_friction"].values, data["line_friction"].values
     known = np.isfinite(friction)
     assert friction[known] == pytest.approx(beside[known], rel=0.2)
@@ -154,18 +154,20 @@ def test_friction_of_lines_across_the_pitch_line_is_that_of_their_slices(
     power = (friction * slides * data["load"].values)[known]
     assert power == pytest.approx(data["film_sliding_loss"].values[known])
     built = load_case(case, settings=helical)
-    slices = states(built)
+    slices = contact_states(built)
     ahead = slices["load"] * np.sign(slices["speed_b"] - slices["speed_a"])
     turns = np.abs(ahead.sum(axis=-1)) / np.where(known, data["load"].values, np.nan)[..., 0]
     at = (*np.unravel_index(np.nanargmin(turns), turns.shape), 0)
-    film = solve_patch(one_contact(built, wholes(built).numbers[at]), nodes=33, cells=32).film
+    film = solve_patch(
+        one_contact(built, whole_contacts(built).numbers[at]), nodes=33, cells=32
+    ).film
     assert float(film.friction) < 0.7 * friction[at]
 
 
 @pytest.mark.whole
 def test_crown_and_lean_are_the_relief_along_the_line(leaning: str) -> None:
     built = load_case(leaning)
-    given, slices = wholes(built), states(built)
+    given, slices = whole_contacts(built), contact_states(built)
     assert given.joined and given.states["load"].shape[-1] == 1
     relief = given.numbers[..., 2:].reshape(*given.states["load"].shape, 4, -1)[..., 3, :]
     at = np.unravel_index(np.argmax(given.states["load"]), given.states["load"].shape)
@@ -182,7 +184,7 @@ def test_crown_and_lean_are_the_relief_along_the_line(leaning: str) -> None:
 @pytest.mark.whole
 def test_the_load_along_a_line_is_that_of_the_slices(leaning: str) -> None:
     built = load_case(leaning)
-    given, slices = wholes(built), states(built)
+    given, slices = whole_contacts(built), contact_states(built)
     at = np.unravel_index(np.argmax(given.states["load"]), given.states["load"].shape)
     film = solve_patch(one_contact(built, given.numbers[at]), nodes=33, cells=32).film
     along = np.trapezoid(film.pressure, film.x, axis=1)
@@ -196,8 +198,8 @@ def test_the_load_along_a_line_is_that_of_the_slices(leaning: str) -> None:
 @pytest.mark.whole
 def test_ends_by_name_lower_the_pressure_there(case: str) -> None:
     built = load_case(case, settings={"film.end_profile": "dub_off", **DUB})
-    numbers = wholes(built).numbers
-    load = wholes(built).states["load"]
+    numbers = whole_contacts(built).numbers
+    load = whole_contacts(built).states["load"]
     at = np.unravel_index(np.argmax(load), load.shape)
     plain = load_case(case)
     sharp, soft = (
@@ -213,7 +215,7 @@ DUB = {"film.end_length": "1 mm", "film.end_radius": "200 mm"}
 @pytest.mark.whole
 def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
     settings = {"film.nodes": 33, "film.refractive_index": 1.47}
-    outcome = running.run(BALL, settings=settings)["default"]
+    outcome = running.run_case(BALL, settings=settings)["default"]
     data = outcome.parts["finite_film"]
     assert "mean_line_loss" not in data
     # An index of 1.47 under the density of Dowson and Higginson at the pressure in the middle.
@@ -223,7 +225,7 @@ def test_a_ball_on_a_disc_has_an_ellipse_once_for_all_phases() -> None:
     read = float(data["read_film"].max() / data["central_film"].max())
     assert read == pytest.approx(index / 1.47, rel=5e-3) and read > 1.03
     words = f"too thick, as compressed oil is denser: by {100.0 * (read - 1.0):.2g} % in the middle"
-    page = render({"default": outcome}).replace("\u00a0", " ")
+    page = report_page({"default": outcome}).replace("\u00a0", " ")
     assert words in data.attrs["interferometry"] and words in page
     # What does not change with time has no course, and what transmits nothing no efficiency.
     assert "Over the mesh cycle" not in page and "undefined, no power" not in page
@@ -258,7 +260,7 @@ def test_compressed_and_warm_oil_refracts_by_its_density(law: str, density: Any)
 @pytest.mark.whole
 def test_a_barrel_has_both_its_radii() -> None:
     built = load_case(BALL, settings={"gears.transverse_radius": "30 mm"})
-    contact = one_contact(built, wholes(built).numbers[0, 0, 0])
+    contact = one_contact(built, whole_contacts(built).numbers[0, 0, 0])
     assert float(contact.radius[0]) == pytest.approx(9.525e-3)
     assert float(1.0 / contact.bend) == pytest.approx(30e-3)
     assert contact.length is None
@@ -306,14 +308,14 @@ def test_films_with_their_heat_have_temperatures_beside_those_of_lines(
 
 @pytest.mark.whole
 def test_a_report_has_the_temperatures_and_no_word_of_isothermal_films(warm: Outcome) -> None:
-    report = render({"default": warm})
+    report = report_page({"default": warm})
     page = opened(report)
     assert "films are isothermal" not in page.lower() and "With heat (mean film)" in page
     for words in ("Temperature above the inlet, in the warmest row", "patch0_0_rise"):
         assert words in page
     told = next(iter(SECTION.answer(warm))).words
     assert "warmer than their inlet" in told
-    assert figures(warm)["finite_film"]["largest_flash_rise"] > 0.0
+    assert figures_by_law(warm)["finite_film"]["largest_flash_rise"] > 0.0
     drawn = [figure["data"] for figure in payload(report)["figures"].values()]
     maps = [(heat["colorscale"], rest) for heat, *rest in drawn if "colorscale" in heat]
     over = [one["line"]["color"] for _, rest in maps for one in rest]
@@ -341,7 +343,7 @@ def test_films_that_are_not_found_are_counted_and_withhold_the_loss(
 
     known: list[PatchFilms] = []
     monkeypatch.setattr(finite_film, "solve_patch", lost)
-    one = running.run(case)["default"]
+    one = running.run_case(case)["default"]
     data = one.parts["finite_film"]
     assert int(data["loaded_contacts"]) - int(data["solved_contacts"]) == 2
     assert np.isnan(float(data["mean_film_loss"])) and np.isnan(float(data["film_efficiency"]))
@@ -350,7 +352,7 @@ def test_films_that_are_not_found_are_counted_and_withhold_the_loss(
     for why in (Code.UNRESOLVED.sentence, Code.NOT_CONVERGED.sentence):
         assert f"1 of {every} loaded contacts have no film ({why})" in told
     assert "a contact was not taken: no grid shows it" in told
-    assert "2 loaded contacts have no film" in render({"default": one})
+    assert "2 loaded contacts have no film" in report_page({"default": one})
 
 
 @pytest.mark.whole
@@ -358,7 +360,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, outcome: Outcome
 ) -> None:
     def run() -> Any:
-        return running.run(case, folder=tmp_path)["default"].parts["finite_film"]
+        return running.run_case(case, folder=tmp_path)["default"].parts["finite_film"]
 
     again, begins = stopped_and_gone_on(finite_film, run, monkeypatch)
     assert begins[:3] == [0, 2, 2]
@@ -380,7 +382,7 @@ def test_progress_tells_contacts_and_steps(case: str) -> None:
 
 @pytest.mark.whole
 def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
-    page = opened(render({"default": outcome}))
+    page = opened(report_page({"default": outcome}))
     for words in (
         '<section id="finite_film"',
         "The contact that carries most",
@@ -394,7 +396,9 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
     # So coarse a grid has no estimate of its error, and no bars.
     data = outcome.parts["finite_film"]
     assert "Bars: estimated error" not in page
-    told = courses("f", outcome, data.assign(minimum_film_error=0.1 * (1.0 + data["load"] * 0.0)))
+    told = film_course_panel(
+        "f", outcome, data.assign(minimum_film_error=0.1 * (1.0 + data["load"] * 0.0))
+    )
     solved = told.figures[0]
     smallest, middle, *_ = solved.data
     height, bar = (np.array(one, float) for one in (smallest["y"], smallest["error_y"]["array"]))
@@ -410,7 +414,7 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
         "lines without ends",
         "constant",
     ]
-    told = figures(outcome)["finite_film"]
+    told = figures_by_law(outcome)["finite_film"]
     assert told["mean_line_loss"] == pytest.approx(
         float(outcome.parts["finite_film"]["mean_line_loss"])
     )
@@ -418,24 +422,28 @@ def test_report_screen_and_json_have_the_films(outcome: Outcome) -> None:
 
 
 def test_what_rounding_leaves_is_zero_on_the_screen() -> None:
-    assert shown("largest_asperity_share", 1e-15) == shown("largest_asperity_share", 0.0) == "0"
-    assert shown("largest_asperity_share", 1e-6) == "1e−4"
+    assert (
+        screen_value("largest_asperity_share", 1e-15)
+        == screen_value("largest_asperity_share", 0.0)
+        == "0"
+    )
+    assert screen_value("largest_asperity_share", 1e-6) == "1e−4"
 
 
 @pytest.mark.whole
 def test_without_a_torque_nothing_is_loaded(case: str) -> None:
-    one = running.run(case, settings={"operation.torque": "0 N m"})["default"]
+    one = running.run_case(case, settings={"operation.torque": "0 N m"})["default"]
     words = next(iter(SECTION.answer(one))).words
     first, *_ = SECTION.screen(one)
     assert words.startswith("Nothing is loaded") and first.line == words
-    page = opened(render({"default": one}))
+    page = opened(report_page({"default": one}))
     assert words in page and "No film was found" not in page
 
 
 @pytest.mark.whole
 @pytest.mark.parametrize("lean", ["80 um", "-80 um"])
 def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
-    one = running.run(case, settings={"gears.misalignment": lean})["default"]
+    one = running.run_case(case, settings={"gears.misalignment": lean})["default"]
     data = one.parts["finite_film"]
     ends = np.isfinite(data["near_ends"].values[..., 0]).any(axis=(0, 1, 2))
     assert ends.sum() == 1
@@ -451,7 +459,7 @@ def test_lines_that_touch_at_either_end_are_told(case: str, lean: str) -> None:
     )
     words = next(iter(SECTION.answer(one))).words
     assert " at least: mean planes overlap, " in words and "undefined" not in words
-    page = opened(render({"default": one}))
+    page = opened(report_page({"default": one}))
     assert "not compared" in page and "undefined, no power" not in page
 
 
@@ -496,7 +504,7 @@ def test_ellipses_have_no_finite_line() -> None:
 def test_ends_that_do_not_fit_are_told(case: str) -> None:
     given = {"film.end_profile": "dub_off", "film.end_radius": "1 m", "film.end_length": "11 mm"}
     with pytest.raises(InputError, match="do not fit") as caught:
-        wholes(load_case(case, settings=given))
+        whole_contacts(load_case(case, settings=given))
     assert caught.value.key == "film.end_length"
 
 

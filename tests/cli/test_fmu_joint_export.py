@@ -20,12 +20,12 @@ from pitchpoint._jax import array
 from pitchpoint.analyses.motion import moving_of
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.joint import Joint, Sliding
-from pitchpoint.dynamics.joint_course import MotorRun, course
+from pitchpoint.dynamics.joint_course import MotorRun, joint_motion
 from pitchpoint.exports.simulators import Asked, HandedOver, hand_over
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.runs.joint_model import JointModel, joint_model
-from pitchpoint.runs.run import Outcome, load_case, run
+from pitchpoint.runs.run import Outcome, load_case, run_case
 
 fmpy = pytest.importorskip("fmpy")
 pytestmark = pytest.mark.skipif(shutil.which("gcc") is None, reason="there is no gcc")
@@ -273,7 +273,7 @@ def test_a_reversal_through_play_is_that_of_an_integrator_with_events(tmp_path: 
 @pytest.mark.whole
 @pytest.mark.parametrize("torque", [60.0, 2.0], ids=["loaded", "through the play"])
 def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: Path) -> None:
-    """Without friction of a map: against `course`, its own motion of a joint."""
+    """Without friction of a map: against `joint_motion`, its own motion of a joint."""
     points, play = np.array([0.0, 1e-3, 3e-3]), 4e-4
     carried, slopes = np.array([0.0, 25.0, 105.0]), np.array([2e4, 3e4, 4.5e4])
     waves, wave = error(), ErrorOrders(array([1e-4]), array([2.0]), array([0.3]))
@@ -292,7 +292,7 @@ def test_wind_up_play_and_error_move_as_in_the_product(torque: float, tmp_path: 
     rest, lag = float(joint.wind_up), 1e-4 * math.cos(0.3)
     times = np.linspace(0.0, 0.2, 41)
     start = array([0.0, 0.0, rest + 1e-3, 0.0])
-    expected = course(joint, wave, MotorRun.steady(40.0), array(times), start)
+    expected = joint_motion(joint, wave, MotorRun.steady(40.0), array(times), start)
     speed = 40.0 / abs(RATIO)
     turning = -1e-4 * 2.0 * abs(RATIO) * math.sin(0.3) * speed
     unit = Unit(
@@ -337,7 +337,9 @@ def test_it_moves_as_the_drive_with_the_friction_of_its_teeth(start: str, tmp_pa
     asked = {"duration": "40 ms", "rise": "5 ms", "count": 201.0, **STARTS[start]}
     settings = {"loss_map.quadrants": 4, "models.load_sharing": "from_stiffness"}
     settings["dynamics.motion.start_up"] = asked
-    made = run(str(MOVES), folder=tmp_path / "run", settings=settings, analyses=PARTS)["default"]
+    made = run_case(str(MOVES), folder=tmp_path / "run", settings=settings, analyses=PARTS)[
+        "default"
+    ]
     moved = made.parts["start_up"]
     work = moved["work_friction"].values[-1]
     # Without friction speeds would be off by half as much.
@@ -380,7 +382,7 @@ def held_loop(height: float) -> dict[str, xr.Dataset]:
 
 @pytest.mark.whole
 def test_teeth_that_hold_brake_a_vibration_as_in_the_product(tmp_path: Path) -> None:
-    """The driver rests: the load swings, and each swing is shorter by the same, as in `course`."""
+    """The driver rests: the load swings, and each swing is shorter by the same, as in `joint_motion`."""
     held, start = 2.0, 0.05
     unit = Unit(made_joint(locking, more=held_loop(2.0 * held)), tmp_path, start_wind_up=start)
     found = np.array(unit.run(0.6, 2e-3, motor_torque=0.0, load_torque=0.0))
@@ -390,7 +392,7 @@ def test_teeth_that_hold_brake_a_vibration_as_in_the_product(tmp_path: Path) -> 
     joint = Joint(WindUpCurve(*line), *values, Sliding(array([held]), array([0.0])))
     still, times = ErrorOrders(array([0.0]), array([1.0]), array([0.0])), np.linspace(0.0, 0.6, 301)
     begin = array([0.0, 0.0, start, 0.0])
-    expected = course(joint, still, MotorRun.steady(0.0), array(times), begin)
+    expected = joint_motion(joint, still, MotorRun.steady(0.0), array(times), begin)
     swing = np.asarray(expected.wind_up)
     assert swing.min() == pytest.approx(-start + 2.0 * held / 1e3, rel=1e-2)
     rate = np.asarray(expected.output_rate)[1:]

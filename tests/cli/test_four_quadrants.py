@@ -293,7 +293,7 @@ def test_both_ends_of_what_holds_a_load_have_the_band_that_was_given(
         assert (every[name] < every[ends[1]]).all()
     (told,) = (one for one in FOUR_QUADRANTS_SECTION.answer(moving[1]))
     held = next(iter(held_at_operation(every).values()))
-    off = show.number(
+    off = show.number_text(
         100.0 * (held["largest_holding_torque_high"] / held["largest_holding_torque"] - 1.0), 2
     )
     assert told.detail.startswith(f"ends ±{off} % of the larger; at least ")

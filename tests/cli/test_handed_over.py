@@ -4,25 +4,25 @@ from pathlib import Path
 
 import pytest
 
-from pitchpoint.cases.document import Document, read, resolve, variants
-from pitchpoint.cases.handed_over import FILES, as_toml, hand_over
-from pitchpoint.cases.library import find, names
+from pitchpoint.cases.document import Document, read_tables, resolve, variants
+from pitchpoint.cases.handed_over import FILES, as_toml, write_case_copy
+from pitchpoint.cases.library import case_names, find_case
 from pitchpoint.cases.record import CASE, RUN, Record, default_folder
 from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.cases.validation import validate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-CASES = [*names(), *map(str, sorted(EXAMPLES.glob("*.toml")))]
+CASES = [*case_names(), *map(str, sorted(EXAMPLES.glob("*.toml")))]
 
 
 def again(text: str, folder: Path) -> Document:
     (folder / CASE).write_text(text, "utf-8")
-    return resolve(read(folder / CASE), name=CASE, variant="default")
+    return resolve(read_tables(folder / CASE), name=CASE, variant="default")
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: Path(case).stem)
 def test_a_case_is_the_same_when_it_is_read_again(case: str, tmp_path: Path) -> None:
-    name, tree = find(case)
+    name, tree = find_case(case)
     for variant in variants(tree):
         document = resolve(tree, name=name, variant=variant)
         other = again(as_toml(document), tmp_path)
@@ -31,7 +31,7 @@ def test_a_case_is_the_same_when_it_is_read_again(case: str, tmp_path: Path) -> 
 
 
 def test_settings_and_studies_stand_in_it(tmp_path: Path) -> None:
-    name, tree = find(str(EXAMPLES / "two_stage.toml"))
+    name, tree = find_case(str(EXAMPLES / "two_stage.toml"))
     settings = {"operation.torque": "150 N m", "stages.2.gears.profile_shift.1": 0.5}
     document = resolve(tree, name=name, variant="default", settings=settings)
     sweep = Sweep(key="operation.speed", start="500 rpm", stop="1500 rpm", count=3.0)
@@ -49,16 +49,16 @@ def test_files_that_a_case_names_lie_beside_it(tmp_path: Path) -> None:
     for place in ("a", "b"):
         (tmp_path / place).mkdir()
         (tmp_path / place / "map.csv").write_text(place)
-    tree = read(EXAMPLES / "ball_on_disc_film.toml")
+    tree = read_tables(EXAMPLES / "ball_on_disc_film.toml")
     step = {"step_along": "1 um", "step_across": "1 um"}
     tree["film"]["heights"] = {
         f"gear_{number}": {"file": str(tmp_path / place / "map.csv"), **step}
         for number, place in ((1, "a"), (2, "b"))
     }
     document = resolve(tree, name="x", variant="default")
-    hand_over(document, tmp_path / "out")
+    write_case_copy(document, tmp_path / "out")
     (tmp_path / "out").rename(tmp_path / "moved")
-    case = validate(resolve(read(tmp_path / "moved" / CASE), name=CASE, variant="default"))
+    case = validate(resolve(read_tables(tmp_path / "moved" / CASE), name=CASE, variant="default"))
     files = [Path(getattr(case.film.heights, f"gear_{number}").file) for number in (1, 2)]
     assert [path.read_text() for path in files] == ["a", "b"]
     assert {path.parent for path in files} == {(tmp_path / "moved" / FILES).resolve()}

@@ -12,15 +12,15 @@ from sound import PAIR
 from pitchpoint.analyses.engagement import course_of
 from pitchpoint.analyses.films import FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.analyses.whole_contacts import one_contact, wholes
+from pitchpoint.analyses.whole_contacts import one_contact, whole_contacts
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.films import solve_patch
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
-from pitchpoint.lubrication.ehl.patch.plan import placed
+from pitchpoint.lubrication.ehl.patch.plan import placed_contacts
 from pitchpoint.runs import run as running
-from pitchpoint.runs.run import Outcome, describe, load_case
-from pitchpoint.views.report import render
+from pitchpoint.runs.run import Outcome, load_case, uncomputed_manifests
+from pitchpoint.views.report import report_page
 
 BALL = (Path(__file__).parents[2] / "examples" / "ball_on_disc_film.toml").read_text("utf-8")
 STEPS = 'step_along = "20 um"\nstep_across = "25 um"\n'
@@ -68,7 +68,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def outcome(folder: Path) -> Outcome:
-    return running.run(written(folder, table("both", "waves.csv")))["default"]
+    return running.run_case(written(folder, table("both", "waves.csv")))["default"]
 
 
 @pytest.mark.whole
@@ -93,7 +93,7 @@ def test_a_file_is_the_map_that_it_holds(folder: Path, file: str, more: str) -> 
 def test_films_are_those_of_the_same_map_in_python(outcome: Outcome, folder: Path) -> None:
     data = outcome.parts["finite_film"]
     built = load_case(written(folder, "", "plain.toml"))
-    plain = one_contact(built, wholes(built).numbers[0, 0, 0])
+    plain = one_contact(built, whole_contacts(built).numbers[0, 0, 0])
     given = HeightMap(x=X, y=Y, heights=1e-6 * WAVES)
     rough = type(plain)(**{**vars(plain), "heights": (given,)})
     film = solve_patch(rough, nodes=33, cells=32).film
@@ -106,17 +106,17 @@ def test_films_are_those_of_the_same_map_in_python(outcome: Outcome, folder: Pat
 def test_another_content_is_another_run(folder: Path, tmp_path: Path) -> None:
     np.savetxt(folder / "own.csv", WAVES, delimiter=",")
     case = written(folder, table("both", "own.csv"), "own.toml")
-    first = running.run(case, folder=tmp_path)["default"].parts["finite_film"]
-    assert running.run(case, folder=tmp_path)["default"].parts["finite_film"].identical(first)
+    first = running.run_case(case, folder=tmp_path)["default"].parts["finite_film"]
+    assert running.run_case(case, folder=tmp_path)["default"].parts["finite_film"].identical(first)
     np.savetxt(folder / "own.csv", 0.5 * WAVES, delimiter=",")
-    again = running.run(case, folder=tmp_path)["default"].parts["finite_film"]
+    again = running.run_case(case, folder=tmp_path)["default"].parts["finite_film"]
     half = 0.5 * first["field_heights"].values
     assert again["field_heights"].values == pytest.approx(half, abs=1e-15)
 
 
 @pytest.mark.whole
 def test_the_report_shows_what_the_grid_sees(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = report_page({"default": outcome})
     assert "Roughness seen" in page and "Film and heights along the contact" in page
 
 
@@ -129,13 +129,13 @@ def test_a_map_moves_with_its_surface_under_squeeze(
     np.savetxt(folder / "long.csv", wave, delimiter=",")
     path, heights = folder / "moves.toml", table("gear_1", "long.csv", "periodic = true\n")
     path.write_text(PAIR + SPUR + heights, "utf-8")
-    data = running.run(str(path))["default"].parts["film_squeeze"]
+    data = running.run_case(str(path))["default"].parts["film_squeeze"]
     assert int(data["solved_moments"]) == int(data["loaded_moments"])
     # Speeds of involutes grow evenly along the path.
     speed = data["entrainment"].values + 0.5 * data["sliding_velocity"].values
     way = np.trapezoid(speed, data["time"].values)
     course = course_of(load_case(str(path)))
-    first, last = (placed(course.contacts, course.times)[k].heights[0] for k in (0, -1))
+    first, last = (placed_contacts(course.contacts, course.times)[k].heights[0] for k in (0, -1))
     assert np.asarray(first.x) == pytest.approx(X)
     assert np.asarray(last.x) - X == pytest.approx(way)
     assert np.ptp(X) < way < 5e-3
@@ -194,7 +194,7 @@ def test_files_of_settings_lie_beside_the_case_file(settings: dict[str, Any], fo
 @pytest.mark.whole
 def test_a_record_of_another_content_is_told(folder: Path, tmp_path: Path) -> None:
     np.savetxt(folder / "kept.csv", WAVES, delimiter=",")
-    (described,) = describe(written(folder, table("both", "kept.csv"), "kept.toml"))
+    (described,) = uncomputed_manifests(written(folder, table("both", "kept.csv"), "kept.toml"))
     (row,) = [row for row in described["inputs"] if row["key"] == "heights.both.digest"]
     assert row["status"] == "derived" and len(row["value"]) == 64
     record = tmp_path / "manifest.json"
@@ -207,7 +207,7 @@ def test_a_record_of_another_content_is_told(folder: Path, tmp_path: Path) -> No
 
 
 def load_warnings(record: Path, settings: dict[str, Any] | None = None) -> list[str]:
-    (again,) = describe(str(record), settings=settings)
+    (again,) = uncomputed_manifests(str(record), settings=settings)
     found: list[str] = again["warnings"]
     return found
 
@@ -233,7 +233,7 @@ def test_maps_that_do_not_fit_the_contact_are_told(
     np.savetxt(folder / "slopes.csv", WAVES * np.linspace(0.0, 1.0, 33)[:, None], delimiter=",")
     case = written(folder, table("both", "slopes.csv"), "misfit.toml")
     with pytest.raises(InputError, match=words) as caught:
-        running.run(case, settings=more)
+        running.run_case(case, settings=more)
     assert caught.value.key == "film.heights"
 
 

@@ -12,10 +12,10 @@ from pitchpoint.analyses.joint import RATED, TORQUES, _found, joint_part
 from pitchpoint.analyses.registry import ANALYSES, JOINT, TORSION
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.registry import JOINT as SECTION
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.screen import head
 from pitchpoint.views.sections.joint import critical_rows
 
@@ -117,7 +117,7 @@ def test_the_whole_curve_agrees_where_little_vibrates(deviating: Outcome) -> Non
 
 @pytest.mark.whole
 def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
-    told = figures(deviating)["joint"]
+    told = figures_by_law(deviating)["joint"]
     assert [*told] == [
         "motor holds its speed",
         "motor runs free",
@@ -136,7 +136,7 @@ def test_the_joint_is_told(deviating: Outcome, outcome: Outcome) -> None:
     )
     (printed,) = SECTION.screen(deviating)
     assert "on a motor that holds its speed" in printed.line
-    page = render({"a": outcome, "b": deviating})
+    page = report_page({"a": outcome, "b": deviating})
     assert page.count('id="joint0_campbell"') == page.count('id="joint1_torque"') == 1
     assert "The damping ratio, 0.1, is that of the free joint" in page
     assert "The damping ratio, 0.03, is that of the free joint" in page

@@ -15,7 +15,7 @@ from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING, FrictionLaw
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.inputs import printed_input_rows
 
 TREE = tomllib.loads(PAIR)
 STEEL = {"young": "206 GPa", "poisson": 0.3}
@@ -121,7 +121,7 @@ def test_a_hardness_on_a_scale_is_a_pressure_and_says_so() -> None:
     assert rows[0]["note"] == (
         "given as 200 HB; a Brinell number is kgf/mm2 over its own indentation, used as it is"
     )
-    shown = {one["key"]: one["value"] for one in input_rows({"inputs": rows})}
+    shown = {one["key"]: one["value"] for one in printed_input_rows({"inputs": rows})}
     assert shown["gear_1.hardness"] == "1.96133 GPa"
 
 

@@ -16,11 +16,11 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.status import Code
 from pitchpoint.views.registry import MOTION as SECTION
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 
 CASE = f"""{PAIR}
 [models]
@@ -62,7 +62,7 @@ def folder(case: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def outcome(case: str, folder: Path) -> Outcome:
-    return running.run(case, folder=folder)["default"]
+    return running.run_case(case, folder=folder)["default"]
 
 
 @pytest.mark.whole
@@ -119,7 +119,7 @@ def test_the_march_goes_up_and_down_and_is_resumed(
     assert data["spectrum"].dims == ("direction", "speed", "order")
     pieces = [path for path in folder.rglob("motion_against_speed*.nc")]
     assert len(pieces) == 1
-    again = running.open_result(folder)["default"].parts["motion_against_speed"]
+    again = running.open_outcomes(folder)["default"].parts["motion_against_speed"]
     np.testing.assert_array_equal(again["mean_efficiency"], data["mean_efficiency"])
 
 
@@ -138,7 +138,7 @@ def test_a_start_gathers_speed_by_what_its_torques_leave(outcome: Outcome) -> No
 
 @pytest.mark.whole
 def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = report_page({"default": outcome})
     assert page.count("Speed rising and falling give the same.") > 3
     assert "speed falling" not in page
     for words in ("Motion with friction", "Campbell", "Against speed", "bearings that yield"):
@@ -148,7 +148,7 @@ def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
     assert ended.line.startswith("Start, after 3")
     assert "gear 1" in ended.line
     assert "largest normal force" in ended.line
-    told = figures(outcome)
+    told = figures_by_law(outcome)
     assert told["motion"]["status"] == Code.SOLVED.sentence
     assert len(told["motion"]["natural_frequency"]) == 5
     assert told["start_up"]["largest_mesh_force"] > 0.0
@@ -162,7 +162,7 @@ def test_report_screen_and_figures_tell_it(outcome: Outcome) -> None:
 
 @pytest.mark.whole
 def test_critical_speeds_are_where_orders_meet_modes(outcome: Outcome) -> None:
-    rows = figures(outcome)["critical_speeds"]
+    rows = figures_by_law(outcome)["critical_speeds"]
     data = outcome.parts["motion_against_speed"]
     natural, ratio = (data[one].values for one in ("natural_frequency", "modal_damping_ratio"))
     low, high = (rpm * np.pi / 30.0 for rpm in (4000.0, 8000.0))
@@ -215,7 +215,7 @@ def test_inertia_that_a_case_leaves_open_stands_among_its_inputs(outcome: Outcom
 
 @pytest.mark.whole
 def test_a_rack_moves_too() -> None:
-    data = running.run(str(sample_of(RackAndPinionGears)))["default"].parts
+    data = running.run_case(str(sample_of(RackAndPinionGears)))["default"].parts
     assert data["motion"].attrs["sentence"] == Code.SOLVED.sentence
     assert float(data["motion"]["mean_efficiency"]) == pytest.approx(
         float(data["motion"]["quasi_static_efficiency"]), abs=2e-3

@@ -11,9 +11,9 @@ import pytest
 
 from pitchpoint import cli
 from pitchpoint.analyses.envelope import set_diameter
-from pitchpoint.analyses.four_quadrants import speed_ratio
+from pitchpoint.analyses.four_quadrants import output_speed_ratio
 from pitchpoint.analyses.strength import ratings_of
-from pitchpoint.cases.document import read, resolve
+from pitchpoint.cases.document import read_tables, resolve
 from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.keys import keys, quantity_at
 from pitchpoint.cases.schema import CaseFile
@@ -24,7 +24,7 @@ from pitchpoint.duty_cycle.table import DutyTable, HeatTable
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY
-from pitchpoint.runs.check import check
+from pitchpoint.runs.check import check_case
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.for_ratio import (
     MODULES,
@@ -57,8 +57,8 @@ def test_it_is_sound_as_it_is(family: str, tmp_path: Path) -> None:
     path = tmp_path / f"{family}.toml"
     path.write_text(template(family))
     if family == "helical":  # the samples of the families are computed elsewhere, this one is not
-        assert check(str(path)) == []
-    case = validate(resolve(read(path), name=path.name, variant="default"))
+        assert check_case(str(path)) == []
+    case = validate(resolve(read_tables(path), name=path.name, variant="default"))
     assert case.title == f"My {family.replace('_', ' ')}"
 
 
@@ -312,14 +312,14 @@ def test_a_strain_wave_gear_for_a_ratio_has_it_within_half_a_turn(
     text = case_for_ratio("strain wave", ratio)
     flexspline, circular_spline = tomllib.loads(text)["gears"]["teeth"]
     built = load_case(tomllib.loads(text))
-    met = -1.0 / speed_ratio(built)
+    met = -1.0 / output_speed_ratio(built)
     assert circular_spline - flexspline == 2
     assert met == pytest.approx(-flexspline / 2) and abs(abs(met) - abs(ratio)) <= 0.25
     assert float(built.case.gears.module) * flexspline == pytest.approx(0.06, rel=1e-3)
     against = ": its output turns against the input" if ratio > 0.0 else ""
     assert f"Ratio {met:.6g}{against}. " in text
     (tmp_path / "new.toml").write_text(text)
-    assert check(str(tmp_path / "new.toml")) == []
+    assert check_case(str(tmp_path / "new.toml")) == []
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.notebook.differences import OTHER_FORM, STILL, derivative_of
 from pitchpoint.results.labelled import in_units
 from pitchpoint.results.store import dataset
-from pitchpoint.runs.run import Progress, own_law
+from pitchpoint.runs.run import Progress, with_user_law
 
 SHIFT, TORQUE, WARM = "gears.profile_shift.1", "operation.torque", "operation.temperature"
 PAIR = pp.Case(
@@ -251,7 +251,9 @@ def in_python(*, sliding: Any, rough: float = 0.1) -> Any:
 
 
 def test_a_lambda_has_a_name_in_results() -> None:
-    (own,) = own_law(PAIR.held[0], lambda *, slide_roll_ratio: 0.05 + 0.0 * slide_roll_ratio).own
+    (own,) = with_user_law(
+        PAIR.held[0], lambda *, slide_roll_ratio: 0.05 + 0.0 * slide_roll_ratio
+    ).own
     assert not isinstance(own, str) and own.title == "own_law, the user's own"
     assert own.name == "own_law"
 
@@ -262,11 +264,11 @@ def linear(*, slide_roll_ratio: Any, slope: float = 0.1) -> Any:
 
 def test_laws_of_ones_own_stand_beside_those_by_name_in_their_order() -> None:
     case = pp.Case(PAIR).set({"models.friction": [{"name": "constant", "coefficient": 0.03}]})
-    beside = own_law(case.held[0], ["Xu 2007", linear, "iso_tr_14179_2"]).built({})
+    beside = with_user_law(case.held[0], ["Xu 2007", linear, "iso_tr_14179_2"]).built({})
     assert beside.law_names == ["xu_2007", "linear", "iso_tr_14179_2"]
     assert [choice.name for choice in beside.case.models.friction] == ["xu_2007", "iso_tr_14179_2"]
-    assert own_law(case.held[0], linear).built({}).law_names == ["linear"]
-    assert own_law(case.held[0], ["xu_2007"]).own == ()
+    assert with_user_law(case.held[0], linear).built({}).law_names == ["linear"]
+    assert with_user_law(case.held[0], ["xu_2007"]).own == ()
 
 
 def test_laws_that_cannot_stand_beside_each_other_are_told() -> None:

@@ -11,7 +11,7 @@ from sound import PAIR, quick_first
 from pitchpoint import cli
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.runs import jobs
-from pitchpoint.views.show import number
+from pitchpoint.views.show import number_text
 
 ISO = "iso_tr_14179_2"
 MODELS = '[models]\nfriction = ["iso_tr_14179_2", "xu_2007"]\n'
@@ -156,5 +156,7 @@ def test_a_law_out_of_its_range_gives_no_headline(
     assert [one["law"] for one in figures["friction_laws_out_of_range"]] == ["xu_2007"]
     assert [*figures["operation"]] == ["xu_2007"]
     page = (tmp_path / "out" / "report.html").read_text("utf-8")
-    big = page.index(f'<p class="big">{number(100 * figures["headline"][ISO]["mean_efficiency"])}')
+    big = page.index(
+        f'<p class="big">{number_text(100 * figures["headline"][ISO]["mean_efficiency"])}'
+    )
     assert big < page.index("Out of its range here: an extrapolation.")

@@ -13,9 +13,9 @@ from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import module
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
-from pitchpoint.runs.catalogue import figures
-from pitchpoint.runs.run import Outcome, describe, run
-from pitchpoint.views.report import render
+from pitchpoint.runs.catalogue import figures_by_law
+from pitchpoint.runs.run import Outcome, run_case, uncomputed_manifests
+from pitchpoint.views.report import report_page
 
 SAMPLE = str(sample_of(RackAndPinionGears))
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rack_and_pinion.toml"
@@ -31,7 +31,7 @@ def outcome() -> Outcome:
 
 def test_the_shipped_example_is_short() -> None:
     assert len(EXAMPLE.read_text("utf-8").splitlines()) <= 15
-    (manifest,) = describe(str(EXAMPLE))
+    (manifest,) = uncomputed_manifests(str(EXAMPLE))
     assert (manifest["driver"], manifest["loaded"]) == ("pinion", "rack")
 
 
@@ -60,12 +60,12 @@ def test_the_map_of_the_rack_is_in_its_units(outcome: Outcome) -> None:
     taken = fast["mean_input_torque"] * fast["output_speed"] / RADIUS
     np.testing.assert_allclose(taken - given, fast["mean_loss"], rtol=1e-10)
     assert (fast["mean_efficiency"] > 0.9).all()
-    assert ">Four quadrants<" in render({"default": outcome})
+    assert ">Four quadrants<" in report_page({"default": outcome})
 
 
 @pytest.mark.whole
 def test_guides_of_the_rack_bear_the_separating_force_alone() -> None:
-    data = run(SAMPLE, settings={**SMALL, **FRICTIONLESS})["default"].parts["operation"]
+    data = run_case(SAMPLE, settings={**SMALL, **FRICTIONLESS})["default"].parts["operation"]
     radial, axial = (
         np.array([float(data[f"{way}_reaction_{k}"].values[0, 0]) for k in (1, 2)])
         for way in ("radial", "axial")
@@ -82,7 +82,7 @@ def test_a_thrust_of_helical_teeth_is_that_on_the_shaft_of_the_pinion_alone(
     thrust = outcome.parts["operation"].copy(deep=True)
     thrust["axial_reaction_1"][:] = 5.0
     helical = replace(outcome, parts={**outcome.parts, "operation": thrust})
-    page = render({"default": helical})
+    page = report_page({"default": helical})
     assert page.count("axial load on the shaft of the pinion") == 1
     assert "axial load on the guides" not in page
 
@@ -125,14 +125,14 @@ def test_the_map_reaches_the_force_that_was_asked_for(outcome: Outcome) -> None:
 
 @pytest.mark.whole
 def test_json_says_the_units_of_a_travel(outcome: Outcome) -> None:
-    shown = figures(outcome)
+    shown = figures_by_law(outcome)
     assert shown["units"]["wind_up"] == "m"
     assert shown["units"]["mean_input_torque"] == "N m"
 
 
 @pytest.mark.whole
 def test_every_section_that_applies_is_in_the_report_in_words_of_a_travel(outcome: Outcome) -> None:
-    page = render({"default": outcome}).replace("\u00a0", " ")
+    page = report_page({"default": outcome}).replace("\u00a0", " ")
     sections = re.findall(r'<section id="(\w+)"', page)
     assert sections[:7] == ["answer", "inputs", "teeth", "bodies", "path", "cycle", "film"]
     assert sections[7] == "torsion"
@@ -173,7 +173,7 @@ REFUSED = {
 def test_what_a_rack_does_not_take_is_one_sentence(key: str) -> None:
     given, words = REFUSED[key]
     with pytest.raises(InputError, match=words) as caught:
-        describe(SAMPLE, settings=given)
+        uncomputed_manifests(SAMPLE, settings=given)
     assert caught.value.key == key
 
 
@@ -181,5 +181,5 @@ def test_a_vibration_asks_for_the_mass(tmp_path: Path) -> None:
     text = Path(SAMPLE).read_text("utf-8").replace('mass = "40 kg"\n', "")
     (tmp_path / "light.toml").write_text(text, "utf-8")
     with pytest.raises(InputError, match="the mass of the rack") as caught:
-        describe(str(tmp_path / "light.toml"))
+        uncomputed_manifests(str(tmp_path / "light.toml"))
     assert caught.value.key == "gears.mass"

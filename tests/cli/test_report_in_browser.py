@@ -13,7 +13,7 @@ from seen import PAPER, faults_on_paper, faults_on_screen, faults_shown, pages
 from sound import SMOOTH, quick_first
 
 from pitchpoint import views
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 from pitchpoint.views.figures import INK, PALETTE
 from pitchpoint.views.report import write_report
 
@@ -43,7 +43,7 @@ sweep = {{ key = "gears.addendum", values = [1.0, 1.2] }}
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("in_browser")
     (folder / "case.toml").write_text(CASE, encoding="utf-8")
-    write_report(run(str(folder / "case.toml"), folder=folder / "out"), folder / "report.html")
+    write_report(run_case(str(folder / "case.toml"), folder=folder / "out"), folder / "report.html")
     return folder / "report.html"
 
 

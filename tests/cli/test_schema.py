@@ -17,15 +17,15 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.handed_over import as_toml
 from pitchpoint.cases.json_schema import case_schema
-from pitchpoint.cases.library import find, names, path_of
+from pitchpoint.cases.library import case_names, case_path, find_case
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.input.tables import alternatives, quantity_of, sentences
-from pitchpoint.units import plain
+from pitchpoint.input.tables import alternatives, field_quantity, key_sentences
+from pitchpoint.units import allows_plain_number
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-FILES = [*sorted(EXAMPLES.glob("*.toml")), *map(path_of, names()), *map(sample_of, TABLES)]
+FILES = [*sorted(EXAMPLES.glob("*.toml")), *map(case_path, case_names()), *map(sample_of, TABLES)]
 
 
 @pytest.fixture(scope="module")
@@ -49,9 +49,9 @@ def test_sound_cases_are_valid(path: Path, validator: Draft202012Validator) -> N
 
 
 def test_a_case_that_was_handed_over_is_valid(validator: Draft202012Validator) -> None:
-    name, tree = find("csd25")
+    name, tree = find_case("csd25")
     for case in (name, str(EXAMPLES / "two_stage.toml")):
-        name, tree = find(case)
+        name, tree = find_case(case)
         settings = {"operation.temperature": "40 degC"}
         document = resolve(tree, name=name, variant="default", settings=settings)
         assert complaints(validator, as_toml(document)) == []
@@ -98,7 +98,7 @@ def test_every_key_says_what_it_is_and_editors_show_it(schema: dict[str, Any]) -
     known = tables(CaseFile) | tables(DriveCase)
     assert len(known) > 50
     for name, model in known.items():
-        sentence = sentences(model)
+        sentence = key_sentences(model)
         for key in model.model_fields:
             told = sentence.get(key, "")
             assert told.endswith(".") and told[0].isupper() and len(told) <= 110, (name, key, told)
@@ -125,7 +125,7 @@ def test_editors_show_units_ranges_and_usual_values(schema: dict[str, Any]) -> N
 def measured(table: type[BaseModel]) -> Iterator[tuple[str, Quantity]]:
     """Keys of a table, and of all in it, that hold a quantity."""
     for name, info in table.model_fields.items():
-        if (quantity := quantity_of(info)) is not None:
+        if (quantity := field_quantity(info)) is not None:
             yield f"{table.__name__}.{name}", quantity
         for inner in alternatives(info.annotation).values():
             yield from measured(inner)
@@ -136,7 +136,7 @@ def test_what_a_key_is_told_to_be_written_as_is_in_its_range() -> None:
     assert len(every) > 150
     for quantity in every.values():
         quantity.read(quantity.example.strip('"'))
-        assert quantity.example.startswith('"') != plain(quantity.kind)
+        assert quantity.example.startswith('"') != allows_plain_number(quantity.kind)
     assert every["WearTable.cycles"].example == "1e6"
     assert every["CylindricalGears.teeth"].example == "20"
 

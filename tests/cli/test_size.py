@@ -17,7 +17,7 @@ from pages import unpacked
 from pitchpoint import cli
 from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
-from pitchpoint.runs.run import load_case, run
+from pitchpoint.runs.run import load_case, run_case
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.views.sizing_report import render_sizing
 from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
@@ -73,7 +73,7 @@ def test_none_of_the_front_is_beaten(sizing: Sizing) -> None:
 @pytest.mark.parametrize("family", ["two stages", "three stages", "two planetary sets", "3K"])
 def test_a_case_that_runs_says_the_same(sizing: Sizing, family: str) -> None:
     design = next(one for one in sizing.designs.values() if one.family == family)
-    parts = run(tomllib.loads(design.case), analyses=PARTS)["default"].parts
+    parts = run_case(tomllib.loads(design.case), analyses=PARTS)["default"].parts
     strength, reflected = parts["strength"], parts["reflected"]
     assert float(strength["least_flank_safety"]) == pytest.approx(design.flank_safety, rel=1e-9)
     assert float(strength["least_root_safety"]) == pytest.approx(design.root_safety, rel=1e-9)
@@ -89,13 +89,13 @@ def stiffness_of(design: SizedDrive) -> float:
     """What the run of its case says, asked how its teeth yield."""
     keys = {"models.load_sharing": "from_stiffness"}
     case = tomllib.loads(design.case)
-    torsion = run(case, analyses=("torsion",), settings=keys)["default"].parts["torsion"]
+    torsion = run_case(case, analyses=("torsion",), settings=keys)["default"].parts["torsion"]
     return float(torsion["torsional_stiffness"].sel(torque=60.0))
 
 
 def test_a_strain_wave_gear_has_the_stiffness_of_its_case(sizing: Sizing) -> None:
     design = next(one for one in sizing.designs.values() if one.family == "strain wave")
-    parts = run(tomllib.loads(design.case), analyses=("torsion",))["default"].parts
+    parts = run_case(tomllib.loads(design.case), analyses=("torsion",))["default"].parts
     there = float(parts["torsion"]["torsional_stiffness"].sel(torque=60.0))
     assert there == pytest.approx(design.stiffness, rel=1e-6)
 
@@ -112,7 +112,7 @@ def test_a_planetary_set_before_a_strain_wave_gear_says_what_its_case_says() -> 
         assert design.flank_safety >= 1.2 and design.root_safety >= 1.5
         assert design.tree["stages"][1]["gears"]["family"] == "strain_wave"
     design = sizing.designs[sizing.best["mass"]]
-    parts = run(tomllib.loads(design.case), analyses=PARTS)["default"].parts
+    parts = run_case(tomllib.loads(design.case), analyses=PARTS)["default"].parts
     assert float(parts["reflected"]["drive_mass"]) == pytest.approx(design.mass, rel=1e-9)
     assert float(parts["strength"]["least_flank_safety"]) == pytest.approx(design.flank_safety)
     loss = 1.0 - float(parts["operation"]["mean_efficiency"].values.ravel()[0])
@@ -128,7 +128,7 @@ def test_load_factors_are_in_the_rating_and_in_the_cases() -> None:
     sizing = size(**light, families="one stage", **factors)
     design = sizing.designs[sizing.best["mass"]]
     assert design.tree["strength"] == {"life": "1000 h", **factors}
-    data = run(tomllib.loads(design.case), analyses=("strength",))["default"].parts["strength"]
+    data = run_case(tomllib.loads(design.case), analyses=("strength",))["default"].parts["strength"]
     assert float(data["least_flank_safety"]) == pytest.approx(design.flank_safety, rel=1e-9)
     assert float(data["least_root_safety"]) == pytest.approx(design.root_safety, rel=1e-9)
     assert design.flank_safety >= 1.2 and design.root_safety >= 1.5
@@ -270,7 +270,7 @@ def test_a_gearbox_that_was_built_is_not_better_than_the_front_for_its_task() ->
         "operation": {"torque": "500 N m", "speed": "1400 rpm", "temperature": "60 degC"},
         "models": {"friction": "iso_tr_14179_2"},
     }
-    parts = run(case, analyses=PARTS)["default"].parts
+    parts = run_case(case, analyses=PARTS)["default"].parts
     mass = float(parts["reflected"]["drive_mass"])
     loss = 1.0 - float(parts["operation"]["mean_efficiency"].values.ravel()[0])
     found = size(

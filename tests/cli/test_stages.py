@@ -16,8 +16,8 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.results.store import load
-from pitchpoint.runs.run import Outcome, describe, run
-from pitchpoint.views.report import render
+from pitchpoint.runs.run import Outcome, run_case, uncomputed_manifests
+from pitchpoint.views.report import report_page
 from pitchpoint.views.sections.spread import spread_sentence
 
 TWO = """
@@ -205,7 +205,7 @@ def test_show_tells_where_values_of_a_stage_come_from(tmp_path: Path) -> None:
     path = tmp_path / "two.toml"
     marked = '{ value = "2 mm", status = "printed", where = "Table 1" }'
     path.write_text(TWO.replace('module = "2 mm"', f"module = {marked}"))
-    (manifest,) = describe(str(path))
+    (manifest,) = uncomputed_manifests(str(path))
     (row,) = (one for one in manifest["inputs"] if one["key"] == "1.gears.module")
     assert (row["status"], row["where"], row["value"]) == ("printed", "Table 1", 0.002)
 
@@ -227,7 +227,7 @@ f1 = 0.001
 def test_a_drive_of_one_stage_names_its_shafts_and_bearings(tmp_path: Path) -> None:
     path = tmp_path / "one.toml"
     path.write_text(ONE + BEARING)
-    (manifest,) = describe(str(path))
+    (manifest,) = uncomputed_manifests(str(path))
     assert (manifest["driver"], manifest["loaded"]) == ("shaft 1", "shaft 2")
     assert [one["effect"] for one in manifest["models"]].count("bearing seat") == 1
     assert "palmgren_1959" in {one["key"] for one in manifest["sources"]}
@@ -239,16 +239,18 @@ def test_a_sweep_of_stages_names_one_of_them(tmp_path: Path) -> None:
     for key in ("stages.gears.module", "stages.0.gears.module"):
         wrong = {"swept": Study(sweep=Sweep(key=key, values=("2 mm",)))}
         with pytest.raises(InputError, match=r"there is no stage .*; use stages.1 to stages.2"):
-            describe(str(path), studies=wrong)
+            uncomputed_manifests(str(path), studies=wrong)
 
 
 def test_the_load_sharing_of_stages_that_differ_is_told_of_each(tmp_path: Path) -> None:
     path = tmp_path / "two.toml"
     path.write_text(TWO)
-    (manifest,) = describe(str(path), settings={"stages.1.models.load_sharing": "equal"})
+    (manifest,) = uncomputed_manifests(
+        str(path), settings={"stages.1.models.load_sharing": "equal"}
+    )
     titles = {one["effect"]: one["title"] for one in manifest["models"]}
     first, second = (titles[f"load sharing, stage {number}"] for number in (1, 2))
-    page = render({"default": Outcome(manifest, {})})
+    page = report_page({"default": Outcome(manifest, {})})
     assert f"<dt>Load sharing</dt><dd>stage 1: {first}; stage 2: {second}</dd>" in page
 
 
@@ -282,10 +284,12 @@ def test_films_and_wear_of_a_stage_are_those_of_its_gears_under_what_it_carries(
     stages = f"[[stages]]\n{FIRST}{FILM}{WEAR}[[stages]]\n{SECOND}{WEAR}"
     (tmp_path / "two.toml").write_text(stages + POINT.format(300))
     parts = ["operation", "film", "wear"]
-    (whole,) = run(str(tmp_path / "two.toml"), folder=tmp_path / "out", analyses=parts).values()
+    (whole,) = run_case(
+        str(tmp_path / "two.toml"), folder=tmp_path / "out", analyses=parts
+    ).values()
     carried = float(whole.parts["operation"]["stage_input_torque"][0, 0, 1])
     (tmp_path / "one.toml").write_text(f"{FIRST}{FILM}{WEAR}{POINT.format(carried)}")
-    (one,) = run(str(tmp_path / "one.toml"), analyses=parts[1:]).values()
+    (one,) = run_case(str(tmp_path / "one.toml"), analyses=parts[1:]).values()
     for part in parts[1:]:
         there = of_stage(whole.parts[part], 1)
         for name, values in one.parts[part].items():
@@ -293,10 +297,10 @@ def test_films_and_wear_of_a_stage_are_those_of_its_gears_under_what_it_carries(
                 np.testing.assert_allclose(there[name], values, rtol=1e-9, err_msg=str(name))
     assert stages_of(whole.parts["film"]) == (1,)
     assert stages_of(whole.parts["wear"]) == (1, 2)
-    page = render({"default": whole})
+    page = report_page({"default": whole})
     for words in ("Films solved, stage 1", "Wear depth, stage 1", "Wear depth, stage 2"):
         assert words in page, words
-    again = run(str(tmp_path / "out" / "default" / "manifest.json"), analyses=parts)["default"]
+    again = run_case(str(tmp_path / "out" / "default" / "manifest.json"), analyses=parts)["default"]
     assert again.parts["wear"].identical(whole.parts["wear"])
 
 

@@ -15,15 +15,22 @@ from pitchpoint import cli
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.analyses.vibration import _excited, stiffness_part, vibrating_of, vibration_part
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.doubts import BRIEF, as_doubt
 from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.errors import InputError
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import Outcome, Progress, describe, load_case, open_result, run_variant
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.runs.run import (
+    Outcome,
+    Progress,
+    load_case,
+    open_outcomes,
+    run_variant,
+    uncomputed_manifests,
+)
+from pitchpoint.views.inputs import printed_input_rows
 from pitchpoint.views.report import write_report
 
 ASKED = ["models.load_sharing=from_stiffness", "dynamics.damping_ratio=0.1"]
@@ -92,14 +99,14 @@ class Run:
     """Tian's pair with load sharing from stiffness and with dynamics, computed once."""
 
     def __init__(self, folder: Path) -> None:
-        name, tree = find("tian2024")
+        name, tree = find_case("tian2024")
         variant = Variant(tree, name, "physical", cli._settings(ASKED))
         names = ("teeth", "cycle", "operation", "laws", "stiffness", "vibration")
         self.outcome = parts_of(variant, folder / "physical", *names)
         (folder / "run.json").write_text(json.dumps({"case": name, "variants": ["physical"]}))
         write_report({"physical": self.outcome}, folder / "report.html")
         self.report = (folder / "report.html").read_text("utf-8")
-        self.kept = open_result(folder)["physical"]
+        self.kept = open_outcomes(folder)["physical"]
 
     def part(self, name: str) -> xr.Dataset:
         return self.kept.parts[name]
@@ -232,7 +239,7 @@ def test_pair_with_four_teeth_is_pointed_without_a_least_tip(file: Callable[[str
 
 
 def vibration(path: str, folder: Path, **settings: Any) -> tuple[xr.Dataset, list[str]]:
-    name, tree = find(path)
+    name, tree = find_case(path)
     changes = {key.replace("__", "."): value for key, value in settings.items()}
     outcome = parts_of(Variant(tree, name, "default", changes), folder, "vibration")
     return outcome.parts["vibration"], outcome.manifest["warnings"]
@@ -300,15 +307,15 @@ def test_warm_wheel_is_softer_and_says_so(file: Callable[[str], str]) -> None:
     # Nearly in proportion to the modulus of the wheel, which yields most.
     assert 0.9 * (1.0 - young[1] / young[0]) < 1.0 - stiff[1] / stiff[0] < 1.0 - young[1] / young[0]
 
-    (manifest,) = describe(path, settings=warming)
+    (manifest,) = uncomputed_manifests(path, settings=warming)
     (sentence,) = (text for text in manifest["warnings"] if text.startswith("The teeth of gear 2"))
     assert f"{warm.solids[1].temperature - 273.15:.1f}".rstrip("0").rstrip(".") in sentence
     assert "POM-H: its modulus is known from -40 degC to 100 degC, interpolated" in sentence
     brief = as_doubt(sentence).brief
     assert brief.startswith("Gear 2 is warm: root at ") and len(brief) <= BRIEF
-    notes = {row["key"]: row["note"] for row in input_rows(manifest)}
+    notes = {row["key"]: row["note"] for row in printed_input_rows(manifest)}
     assert notes["gear 2, Young's modulus"] == sentence
-    (manifest,) = describe(path, settings=WARM)
+    (manifest,) = uncomputed_manifests(path, settings=WARM)
     assert not any("The teeth of gear 2" in text for text in manifest["warnings"])
 
     told = summaries([warm], warm.models, {}, title="warm").attrs["warming"]

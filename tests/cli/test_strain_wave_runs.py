@@ -15,16 +15,16 @@ import pitchpoint as pp
 from pitchpoint import programs
 from pitchpoint.analyses.running import BANDS
 from pitchpoint.cases.built import ALONE, BEARING_FREE, LACKING, TEETH_ALONE
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import Outcome, Progress, open_result
+from pitchpoint.runs.run import Outcome, Progress, open_outcomes
 from pitchpoint.views import show
 from pitchpoint.views.registry import TORSION
 from pitchpoint.views.screen import head
-from pitchpoint.views.sections.answer import summary
+from pitchpoint.views.sections.answer import operation_summary
 from pitchpoint.views.sections.beside import running_rows, starting_answer
 from pitchpoint.views.sections.kinematic_error import error_rows, kinematic_error_answer
 from pitchpoint.views.sections.torsion import wind_up_rows
@@ -77,7 +77,7 @@ def programs_stay() -> Iterator[None]:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     where = tmp_path_factory.mktemp("drive")
     (where / "drive.toml").write_text(DRIVE)
-    running.run(str(where / "drive.toml"), folder=where / "out")
+    running.run_case(str(where / "drive.toml"), folder=where / "out")
     yield where / "out"
 
 
@@ -92,7 +92,7 @@ def other(folder: Path) -> tuple[int, Outcome]:
         "lubricant.name": "mineral-vg-220",
         "gears.deviations": {"flexspline": [{"order": 2, "amplitude": "0.1 um"}]},
     }
-    found = running.run(str(folder.parent / "drive.toml"), settings=settings)["default"]
+    found = running.run_case(str(folder.parent / "drive.toml"), settings=settings)["default"]
     return programs._LOADED["programs"] - before, found
 
 
@@ -113,7 +113,7 @@ def test_empty_places_for_pairs_are_not_told(drive: Outcome, other: tuple[int, O
 
 @pytest.fixture(scope="module")
 def drive(folder: Path) -> Outcome:
-    return open_result(folder)["default"]
+    return open_outcomes(folder)["default"]
 
 
 @pytest.mark.whole
@@ -127,7 +127,7 @@ def test_all_parts_are_there(drive: Outcome) -> None:
 
 @pytest.mark.whole
 def test_an_efficiency_without_losses_is_that_of_the_teeth_alone(folder: Path) -> None:
-    name, tree = find(str(folder.parent / "drive.toml"))
+    name, tree = find_case(str(folder.parent / "drive.toml"))
     with_losses = Variant(tree, name, "default").built({})
     alone = Variant({**tree, "losses": {}}, name, "default").built({})
     assert with_losses.covers == {}
@@ -156,14 +156,14 @@ def test_the_torsional_stiffness_carries_what_yields(drive: Outcome) -> None:
         "Stiffness: bearing of the wave generator, bottom of the cup, flange joint, "
     )
     assert line.endswith("are not in it; 3 dimensions of its parts are assumed, see the inputs.")
-    assert "assumed proportions: rim thickness" in figures(drive)["torsion"]["stiffness_of"]
+    assert "assumed proportions: rim thickness" in figures_by_law(drive)["torsion"]["stiffness_of"]
 
 
 @pytest.mark.whole
 def test_the_tables_on_screen(drive: Outcome) -> None:
-    (row,) = summary(drive).rows
+    (row,) = operation_summary(drive).rows
     assert head("mean_efficiency") in row
-    assert "xu_2007" in summary(drive).line
+    assert "xu_2007" in operation_summary(drive).line
     rows = wind_up_rows(drive)
     assert [row[head("torque", drive.parts["torsion"])] for row in rows] == [
         "33.5",
@@ -175,7 +175,7 @@ def test_the_tables_on_screen(drive: Outcome) -> None:
     columns = [*rows[0]]
     assert columns[1:] == ["flexspline", "circular spline", "both"]
     assert [row[columns[0]] for row in rows] == ["geometry", "elastic mean", "under load"]
-    told = figures(drive)
+    told = figures_by_law(drive)
     size = float(rows[2]["both"])  # in seconds of arc
     given = told["kinematic_error_range"]["under load"]["both"]
     assert np.degrees(given) * 3600.0 == pytest.approx(size, rel=1e-4)
@@ -256,7 +256,10 @@ def test_running_without_load(drive: Outcome) -> None:
     words = dict(starting_answer(drive, "constant"))
     rows = running_rows(drive)
     assert [row[head("temperature")] for row in rows] == ["20", "40", "60"]
-    told, place = figures(drive)["running"], [row[head("temperature")] for row in rows].index("40")
+    told, place = (
+        figures_by_law(drive)["running"],
+        [row[head("temperature")] for row in rows].index("40"),
+    )
     held = float(rows[place][head("starting_torque")].partition(" ")[0])  # before its band
     assert held == pytest.approx(told["constant"]["starting_torque"][place], rel=1e-4)
     torques = [

@@ -35,7 +35,7 @@ from pitchpoint.analyses.films import (
     OVERLAP,
     film_notes,
 )
-from pitchpoint.cases.document import read
+from pitchpoint.cases.document import read_tables
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.record import Manifest, Record
 from pitchpoint.dynamics.energy import relative_closure
@@ -46,7 +46,7 @@ from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.plain_files import content, digest, digest_of
 from pitchpoint.results import store
 from pitchpoint.results.store import load
-from pitchpoint.runs.run import Outcome, describe
+from pitchpoint.runs.run import Outcome, uncomputed_manifests
 
 FORMULAS = (
     "=cmd|' /C calc'!A0",
@@ -243,7 +243,7 @@ def test_every_door_for_files_asks_whether_they_end(
 ) -> None:
     path = endless[name]
     assert digest_of(str(path)) == ""
-    for reader in (read, load, Manifest.read, Record.read):
+    for reader in (read_tables, load, Manifest.read, Record.read):
         with pytest.raises(InputError):
             reader(path)
     table = {"file": str(path), "step_along": "1 um", "step_across": "1 um"}
@@ -285,7 +285,7 @@ def test_a_variant_is_a_table_behind_its_mark(overlay: str, tmp_path: Path) -> N
     path = tmp_path / "pair.toml"
     path.write_text(f"{sound.PAIR}[variants]\na = {overlay}\n", "utf-8")
     with pytest.raises(InputError) as caught:
-        describe(str(path))
+        uncomputed_manifests(str(path))
     assert OVERLAYS[overlay] in str(caught.value).splitlines()[0]
 
 
@@ -294,14 +294,14 @@ def test_a_variant_may_carry_a_mark(tmp_path: Path) -> None:
     path.write_text(
         f'{sound.PAIR}[variants]\na = {{ value = {{ roughness = {{ ra = "1 um" }} }}, note = "x" }}\n'
     )
-    (described,) = describe(str(path))
+    (described,) = uncomputed_manifests(str(path))
     (row,) = [
         row for row in described["inputs"] if (row["table"], row["key"]) == ("roughness", "ra")
     ]
     assert row["value"] == [1e-6, 1e-6]
     path.write_text("value = 3\n", "utf-8")
     with pytest.raises(InputError, match="value: is not a known key"):
-        describe(str(path))
+        uncomputed_manifests(str(path))
 
 
 NAMES = (".", "", "_", "~", "/", "..", "-", "%", "\u202e", "*", "\x1b[2J", "x" * 300)
@@ -331,10 +331,10 @@ def test_names_of_bodies_are_names(name: str) -> None:
     path = Path(__file__).parents[2] / "examples" / "three_k.toml"
     train = tomllib.loads(path.read_text("utf-8"))
     with pytest.raises(InputError, match=r"train.carrier: .* is not a name; use 1 to 40 signs"):
-        describe(Case({**train, "train": {**train["train"], "carrier": name}}))
+        uncomputed_manifests(Case({**train, "train": {**train["train"], "carrier": name}}))
     train["stages"][0]["bodies"][0] = name
     with pytest.raises(InputError, match=r"stages.1.bodies.*: .* is not a name; use 1 to 40 signs"):
-        describe(Case(train))
+        uncomputed_manifests(Case(train))
 
 
 def nested(levels: int) -> Any:
@@ -390,15 +390,17 @@ VALUES: dict[str, Any] = {
 }
 PAIR = tomllib.loads(sound.PAIR)
 DOORS: dict[str, Callable[[Any], Any]] = {
-    "a value": lambda value: describe(Case({**PAIR, "gears": {**PAIR["gears"], "module": value}})),
-    "a table": lambda value: describe(Case({**PAIR, "roughness": value})),
-    "a variant": lambda value: describe(Case({**PAIR, "variants": {"a": value}})),
-    "a case": lambda value: describe(Case(value)),
+    "a value": lambda value: uncomputed_manifests(
+        Case({**PAIR, "gears": {**PAIR["gears"], "module": value}})
+    ),
+    "a table": lambda value: uncomputed_manifests(Case({**PAIR, "roughness": value})),
+    "a variant": lambda value: uncomputed_manifests(Case({**PAIR, "variants": {"a": value}})),
+    "a case": lambda value: uncomputed_manifests(Case(value)),
     "set": lambda value: Case(PAIR).set(torque=value),
-    "set a table": lambda value: describe(Case(PAIR).set(roughness=value)),
+    "set a table": lambda value: uncomputed_manifests(Case(PAIR).set(roughness=value)),
     "settings": lambda value: run(PAIR, settings={"operation.torque": value}, analyses=["none"]),
     "study": lambda value: study(PAIR, {"torque": [1.0, value]}),
-    "a file": lambda value: describe(value),
+    "a file": lambda value: uncomputed_manifests(value),
 }
 
 
@@ -516,5 +518,5 @@ def test_numbers_beyond_all_numbers_are_told_as_written(
     settings = {"gears.teeth": cli._value(f"[{number}, 61]")}
     for case, changes in ((str(path), {}), (PAIR, settings)):
         with pytest.raises(InputError, match=f'gears.teeth: "{number}" {words}'):
-            describe(case, settings=changes)
+            uncomputed_manifests(case, settings=changes)
     assert cli._value("[1e308, 0.0e9, 1e-300, inf]") == [1e308, 0.0, 1e-300, np.inf]

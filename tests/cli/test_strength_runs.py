@@ -17,9 +17,9 @@ from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.runs.run import Outcome, describe, open_result, run_piece
+from pitchpoint.runs.run import Outcome, open_outcomes, run_piece, uncomputed_manifests
 from pitchpoint.views import show
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.sections.strength import STRENGTH, strength_rows
 
 
@@ -89,7 +89,7 @@ def test_what_is_assumed_stands_beside_the_safeties(outcome: Outcome, folder: Pa
     assert assumed in printed.line
     assert "method B" in printed.line
     (folder / "run.json").write_text(json.dumps({"case": "pair.toml", "variants": ["default"]}))
-    page = render(open_result(folder))
+    page = report_page(open_outcomes(folder))
     assert "Strength of the teeth" in page
     assert "tooth form factor" in page
 
@@ -100,7 +100,7 @@ def test_the_first_screen_says_on_what_safeties_stand(outcome: Outcome) -> None:
     for figure, part in ((flanks, "flank"), (roots, "root")):
         at = int(np.argmin(data[f"{part}_safety"].values))
         safety, cycles = (
-            show.number(float(data[f"{part}_{name}"][at])) for name in ("safety", "cycles")
+            show.number_text(float(data[f"{part}_{name}"][at])) for name in ("safety", "cycles")
         )
         assert figure.value == safety
         life = f"{cycles} load cycles (20000 h)"
@@ -137,7 +137,7 @@ def test_a_table_of_limits_asks_for_the_treatment(tmp_path: Path) -> None:
     with pytest.raises(
         InputError, match=r"strength\.treatment: is missing: limits were given for gear 1"
     ):
-        describe(str(path))
+        uncomputed_manifests(str(path))
     data = strength_of(path, {"strength.treatment": "case_hardened"})
     assert np.all(np.isfinite(data["flank_safety"]))
     assert np.all(np.isnan(data["root_safety"]))
@@ -152,7 +152,7 @@ def test_gears_without_cylindrical_pairs_are_refused_with_a_sentence(table: Any)
     with pytest.raises(
         InputError, match="strength: was given; ISO 6336 rates pairs of cylindrical"
     ):
-        describe(sample, settings={"strength.application_factor": 1.2})
+        uncomputed_manifests(sample, settings={"strength.application_factor": 1.2})
 
 
 def test_a_pinion_of_steel_and_a_wheel_of_plastic() -> None:
@@ -308,7 +308,7 @@ def test_what_cannot_be_rated_so_is_refused(
     pair_file: Path, settings: dict[str, Any], words: str
 ) -> None:
     with pytest.raises(InputError, match=words):
-        describe(str(pair_file), settings=settings)
+        uncomputed_manifests(str(pair_file), settings=settings)
 
 
 def test_the_tensile_strength_bounds_plastics_without_a_source() -> None:

@@ -13,7 +13,7 @@ from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.cases.variant import Variant
 from pitchpoint.duty_cycle.history import load_steps
-from pitchpoint.notebook.tables import summary
+from pitchpoint.notebook.tables import summary_frame
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Progress, run_variant
 from pitchpoint.views.sections.studies import swept_rows
@@ -39,7 +39,7 @@ def test_a_study_has_the_strength_of_each_run() -> None:
     by_sweep = swept(PAIR + RATED, *widths)
     for at, width in enumerate(widths):
         outcome = computed(PAIR + RATED, None, "strength", **{WIDTH: width})
-        data, rows = outcome.parts["strength"], summary(outcome)
+        data, rows = outcome.parts["strength"], summary_frame(outcome)
         each = (
             data["contact_stress"].values.max(),
             data["root_stress"].values.max(),

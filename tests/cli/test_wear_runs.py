@@ -23,11 +23,11 @@ from pitchpoint.errors import InputError
 from pitchpoint.results import store
 from pitchpoint.results.store import load
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
-from pitchpoint.runs.run import Outcome, describe, load_case
+from pitchpoint.runs.catalogue import figures_by_law
+from pitchpoint.runs.run import Outcome, load_case, uncomputed_manifests
 from pitchpoint.views.figures import Panel
 from pitchpoint.views.registry import WEAR as SECTION
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.section import Page
 from pitchpoint.wear import history
 
@@ -72,7 +72,7 @@ def case(folder: Path) -> str:
 
 @pytest.fixture(scope="module")
 def outcome(case: str, folder: Path) -> Outcome:
-    return running.run(case, folder=folder / "whole")["default"]
+    return running.run_case(case, folder=folder / "whole")["default"]
 
 
 @pytest.mark.whole
@@ -84,7 +84,7 @@ def test_the_march_ends_where_it_is_asked_to(outcome: Outcome) -> None:
     depth = data["deepest_wear"].values
     assert np.all(np.diff(depth, axis=0) > 0.0)
     assert data["wear_error"].values[-1] == pytest.approx(0.0, abs=2e-2 * depth[-1].max())
-    told = figures(outcome)["wear"]
+    told = figures_by_law(outcome)["wear"]
     assert told["final_depth"] == float(data["final_depth"]) == depth[-1].max()
     assert 0.0 < told["backlash_growth"] < depth[-1].sum()
     # Gear 2 meets with every third turn of gear 1.
@@ -110,7 +110,7 @@ def test_a_march_that_is_stopped_at_every_step_ends_with_the_same_bits(
     while found is None:
         done: list[int] = []
         try:
-            found = running.run(case, folder=folder / "stopped")["default"]
+            found = running.run_case(case, folder=folder / "stopped")["default"]
         except KeyboardInterrupt:
             continue
     assert len(stops) == outcome.parts["wear"].sizes["step"] - 1
@@ -161,14 +161,14 @@ def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
     settings = {"worn.file": str(kept), "worn.cycles": 3e6}
     case = written(folder, MODELS, "pair.toml")
     new, unworn, worn = (
-        running.run(case, settings=more)["default"].parts["stiffness"]
+        running.run_case(case, settings=more)["default"].parts["stiffness"]
         for more in ({}, {**settings, "worn.cycles": 0.0}, settings)
     )
     for name, values in new.data_vars.items():
         assert values.values.tobytes() == unworn[name].values.tobytes()
     errors = [float(np.ptp(one["static_transmission_error"].values)) for one in (new, worn)]
     assert abs(errors[1] / errors[0] - 1.0) > 0.05
-    (record,) = describe(case, settings=settings)
+    (record,) = uncomputed_manifests(case, settings=settings)
     data = outcome.parts["wear"]
     most, error = (
         " and ".join(f"{1e6 * depth:.3g}" for depth in data[name].values[-1])
@@ -186,7 +186,7 @@ def test_worn_gears_are_gears(outcome: Outcome, folder: Path) -> None:
 @pytest.mark.whole
 def test_a_kept_profile_wears_in_proportion_to_the_cycles(case: str) -> None:
     both = [
-        running.run(case, settings={"wear.profile": "kept", "wear.cycles": turns})["default"]
+        running.run_case(case, settings={"wear.profile": "kept", "wear.cycles": turns})["default"]
         for turns in (1e4, 1e7)
     ]
     short, long = (one.parts["wear"]["worn_depth"].values[-1] for one in both)
@@ -202,7 +202,8 @@ def test_a_life_is_as_near_as_is_told(case: str) -> None:
         {"wear.cells": 80, "wear.phases": 48, "wear.tolerance": 3e-4},
     )
     coarse, fine = (
-        running.run(case, settings={**limit, **grid})["default"].parts["wear"] for grid in grids
+        running.run_case(case, settings={**limit, **grid})["default"].parts["wear"]
+        for grid in grids
     )
     assert coarse.attrs["end"] == fine.attrs["end"] == "depth"
     error = float(coarse["final_cycles_error"])
@@ -216,7 +217,7 @@ def test_the_backlash_of_lines_that_cross_their_pitch_line_is_one_of_the_slices(
     wide = {"gears.helix_angle": "15 deg", "gears.face_width": "40 mm"}
     wide |= {"wear.profile": "kept", "wear.sensitivities": False}
     few, many = (
-        running.run(case, settings={**wide, "models.slices": slices})["default"].parts["wear"]
+        running.run_case(case, settings={**wide, "models.slices": slices})["default"].parts["wear"]
         for slices in (12, 24)
     )
     grown, less = (float(data["backlash_growth"][-1]) for data in (few, many))
@@ -229,7 +230,7 @@ def test_the_backlash_of_lines_that_cross_their_pitch_line_is_one_of_the_slices(
 @pytest.mark.whole
 def test_the_march_ends_where_flanks_move_off_their_places(case: str) -> None:
     given = {"wear.coefficient": 1e-3, "wear.cycles": 1e12, "wear.profile": "kept"}
-    data = running.run(case, settings=given)["default"].parts["wear"]
+    data = running.run_case(case, settings=given)["default"].parts["wear"]
     assert data.attrs["end"] == "module"
     assert float(data["final_depth"]) == pytest.approx(0.2 * 2e-3)
     assert any("the march ends at 0.2 modules" in one for one in json.loads(data.attrs["warnings"]))
@@ -244,7 +245,7 @@ def test_a_strain_wave_gear_wears_whose_contacts_are_wide_as_new() -> None:
         **{"models.load_sharing": "from_stiffness", "wear.cells": 20.0, "wear.phases": 12.0},
     }
     case = str(Path(__file__).parents[2] / "examples" / "strain_wave.toml")
-    data = running.run(case, settings=settings)["default"].parts["wear"]
+    data = running.run_case(case, settings=settings)["default"].parts["wear"]
     assert data.attrs["end"] == "turns"
     limit = np.array([0.747e-6, 0.314e-6])  # on 160 cells and 96 phases
     deepest, error = data["deepest_wear"].values[-1], data["wear_error"].values[-1]
@@ -264,7 +265,7 @@ def test_a_ball_that_conforms_ends_the_march(folder: Path) -> None:
         "wear.cells": 8,
         "wear.phases": 4,
     }
-    outcome = running.run(str(ball), settings=settings)["default"]
+    outcome = running.run_case(str(ball), settings=settings)["default"]
     data = outcome.parts["wear"]
     assert data.attrs["end"] == "outgrown"
     assert json.loads(data.attrs["members"]) == ["disc", "ball"]
@@ -272,7 +273,7 @@ def test_a_ball_that_conforms_ends_the_march(folder: Path) -> None:
     # The deepest strip lies under the middle of the contact, not at an end of what it can reach.
     strips = data["worn_depth"].values[-1, 0].max(axis=0)
     assert abs(int(np.argmax(strips)) - strips.size / 2) <= strips.size / 4
-    assert 'id="wear"' in render({"default": outcome})
+    assert 'id="wear"' in report_page({"default": outcome})
 
 
 LIMITS = {
@@ -290,7 +291,7 @@ def test_a_limit_ends_the_march(case: str, outcome: Outcome, end: str) -> None:
     if end == "tip land":
         land = float(outcome.parts["wear"]["worn_tip_land"].values[0].min()) - 1e-6
         given, expected = {"wear.tip_land_limit": f"{land!r} m"}, land
-    found = running.run(case, settings=given)["default"]
+    found = running.run_case(case, settings=given)["default"]
     data = found.parts["wear"]
     assert data.attrs["end"] == end
     assert float(data[name].values.reshape(data[name].shape or 1)[-1].min()) == pytest.approx(
@@ -304,7 +305,7 @@ def test_a_limit_ends_the_march(case: str, outcome: Outcome, end: str) -> None:
 @pytest.mark.whole
 def test_tips_that_are_narrower_as_new_are_refused(case: str) -> None:
     with pytest.raises(InputError, match=r"wear.tip_land_limit: 9 mm was given, and teeth of gear"):
-        running.run(case, settings={"wear.tip_land_limit": "9 mm"})
+        running.run_case(case, settings={"wear.tip_land_limit": "9 mm"})
 
 
 STEEL = {"young": "206 GPa", "poisson": 0.3, "hardness": "2 GPa"}
@@ -320,8 +321,8 @@ MIXED = {
 
 @pytest.mark.whole
 def test_mixed_lubrication_wears_less_than_dry_flanks(folder: Path) -> None:
-    dry = running.run(written(folder, MODELS + DRY), settings={"wear.cycles": 1.0})
-    mixed = running.run(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)
+    dry = running.run_case(written(folder, MODELS + DRY), settings={"wear.cycles": 1.0})
+    mixed = running.run_case(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)
     depths = [float(one["default"].parts["wear"]["final_depth"]) for one in (dry, mixed)]
     assert 0.0 < depths[1] < 1e-2 * depths[0]
 
@@ -330,14 +331,18 @@ def test_mixed_lubrication_wears_less_than_dry_flanks(folder: Path) -> None:
 def test_the_load_on_asperities_by_films(folder: Path) -> None:
     """Named in the case: neither a formula nor its hardness is asked for, and the report says so."""
     films = {**MIXED, "wear.load_ratio": "film", "models.asperity_load": "none"}
-    outcome = running.run(written(folder, MODELS + DRY, "films.toml"), settings=films)["default"]
-    formula = running.run(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)["default"]
+    outcome = running.run_case(written(folder, MODELS + DRY, "films.toml"), settings=films)[
+        "default"
+    ]
+    formula = running.run_case(written(folder, MODELS + DRY, "mixed.toml"), settings=MIXED)[
+        "default"
+    ]
     depths = [float(one.parts["wear"]["final_depth"]) for one in (outcome, formula)]
     assert 0.05 < depths[0] / depths[1] < 20.0 and depths[0] != depths[1]
-    page = render({"default": outcome})
+    page = report_page({"default": outcome})
     assert "with the load on asperities from solved films" in page
     assert "1 % more of" not in page
-    (record,) = describe(written(folder, MODELS + DRY, "films.toml"), settings=films)
+    (record,) = uncomputed_manifests(written(folder, MODELS + DRY, "films.toml"), settings=films)
     rows = {f"{row['table']}.{row['key']}" for row in record["inputs"]}
     assert {"wear.load_ratio", "film.nodes", "film.asperities"} <= rows
 
@@ -355,7 +360,7 @@ def test_the_error_of_wear_has_that_of_the_grid_of_films(
     )
 
     def wear(nodes: int) -> xr.Dataset:
-        run = running.run(case, settings={**films, "film.nodes": nodes})
+        run = running.run_case(case, settings={**films, "film.nodes": nodes})
         return run["default"].parts["wear"].isel(step=-1)
 
     coarse, usual, fine = (wear(nodes) for nodes in (33, 65, 129))
@@ -375,16 +380,18 @@ def test_a_film_that_is_not_solved_ends_the_march(
     lost = lambda model, at, oil, temperature: np.full(at.load.shape, np.nan)  # noqa: E731
     monkeypatch.setattr(history, "asperity_share", lost)
     films = {**MIXED, "wear.load_ratio": "film"}
-    outcome = running.run(written(folder, MODELS + DRY, "lost.toml"), settings=films)["default"]
+    outcome = running.run_case(written(folder, MODELS + DRY, "lost.toml"), settings=films)[
+        "default"
+    ]
     data = outcome.parts["wear"]
     assert data.attrs["end"] == "lost" and data.sizes["step"] == 1
     told = "the loads, or films, of flanks that are worn so far were not found"
-    assert told in render({"default": outcome})
+    assert told in report_page({"default": outcome})
 
 
 @pytest.mark.whole
 def test_report_shows_the_worn_flanks(outcome: Outcome) -> None:
-    page = render({"default": outcome})
+    page = report_page({"default": outcome})
     assert 'id="wear"' in page
     assert "not reached: 1.5 times the least rate" in page
     assert "backlash that wear adds" in page
@@ -535,5 +542,5 @@ def test_flanks_are_drawn_where_they_are_and_their_wear_magnified(outcome: Outco
 @pytest.mark.whole
 def test_severe_wear_by_the_pressure_is_told_with_its_factor(case: str) -> None:
     given = {"wear.severe_by": "pressure", "wear.cycles": 10.0}
-    page = render({"default": running.run(case, settings=given)["default"]})
+    page = report_page({"default": running.run_case(case, settings=given)["default"]})
     assert "not reached: 1.5 times the largest pressure at the start" in page

@@ -20,7 +20,7 @@ from pitchpoint.analyses.wear import WEAR
 from pitchpoint.contact.worn import FLATTEST, Worn
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.results.store import load, save
-from pitchpoint.runs.run import load_case, run
+from pitchpoint.runs.run import load_case, run_case
 
 MODELS = {
     "models.load_sharing": "from_stiffness",
@@ -56,7 +56,7 @@ def alone() -> Iterator[None]:
 
 def parts(settings: Mapping[str, Any], folder: Path | None = None) -> dict[str, xr.Dataset]:
     """Datasets of the pair of tian2024."""
-    found = run("tian2024", folder=folder, only=["physical"], settings=MODELS | settings)
+    found = run_case("tian2024", folder=folder, only=["physical"], settings=MODELS | settings)
     return found["physical"].parts
 
 

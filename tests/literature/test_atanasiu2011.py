@@ -16,11 +16,11 @@ from pitchpoint._jax import jnp
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.results.target_rows import counts
 
-NAME, TREE = find("atanasiu2011")
+NAME, TREE = find_case("atanasiu2011")
 VARIANT = Variant(TREE, NAME, "as_published")
 PAIRS = ("gp1", "gp2", "gp3", "gp4")
 GEOMETRY = {

@@ -20,7 +20,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import resolve
 from pitchpoint.cases.inputs import resolved
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
 from pitchpoint.efficiency.running_torque import torques_at_rest
@@ -121,7 +121,7 @@ def test_constants_that_are_fitted_are_named():
 
     X_L of the oil is a fit of its source to losses of other gears.
     """
-    document = resolve(dict(find("csd25")[1]), name="csd25", variant="default")
+    document = resolve(dict(find_case("csd25")[1]), name="csd25", variant="default")
     assert not [mark for mark in document.provenance.values() if mark.status == "fitted"]
     rows = [row for row in resolved(case()[0], document) if row["status"] == "fitted"]
     place = "wave_generator_bearing"
@@ -133,7 +133,7 @@ def test_constants_that_are_fitted_are_named():
 
 
 def test_rows_of_the_case_are_those_of_the_catalogue():
-    rows = [row for row in find("csd25")[1]["targets"] if row["study"].startswith("rpm")]
+    rows = [row for row in find_case("csd25")[1]["targets"] if row["study"].startswith("rpm")]
     assert {row["kind"] for row in rows} == {"calibrated"}
     listed = {}
     for row in rows:
@@ -166,7 +166,7 @@ def test_each_of_the_two_constants_is_needed_and_at_its_best():
 @pytest.mark.whole
 def test_a_higher_ratio_loses_less_torque():
     """Ratio 160, -10 and 40 degC, 2000 rpm: what grows with the deflection falls with the ratio."""
-    tree = find("csd25")[1]
+    tree = find_case("csd25")[1]
     changes = tree["studies"]["ratio_160"]["change"]
     higher = load_case("csd25", settings=changes).design
     found, printed = 100.0 * efficiency(design=higher)[0][2, [0, -1]], np.array([25.0, 70.0])
@@ -188,7 +188,7 @@ STARTING = {(17, 100): (0.034, 3.3), (25, 50): (0.15, 9.0)}
 
 def of_size(size, ratio):
     """A drive that names the set, pitch diameter in tenths of an inch."""
-    shipped = find("csd25")[1]
+    shipped = find_case("csd25")[1]
     tree = {key: shipped[key] for key in ("lubricant", "roughness", "models")}
     tree["gears"] = {"family": "strain_wave", "teeth": [2 * ratio, 2 * ratio + 2]}
     tree["gears"] |= {"module": SIValue(2.54e-3 * size / (2 * ratio))}
@@ -322,7 +322,7 @@ def _torsion(design, terms, load, phase):
 
 def drive(variant="rigid_bearing", scale=1.0):
     """The shipped case, or the same drive with every length scaled."""
-    tree = find("hfuc32")[1]["gears"]
+    tree = find_case("hfuc32")[1]["gears"]
     lengths = {f"gears.{key}": tree[key]["value"] for key in ("module", "face_width")}
     rim = tree["flexspline"]
     lengths |= {f"gears.flexspline.{key}": length["value"] for key, length in rim.items()}

@@ -18,7 +18,7 @@ from torus_in_print import NAME, TREE, case, driven, points, read
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves, resolve
-from pitchpoint.citations import cite
+from pitchpoint.citations import citation_text
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.lubrication.friction_coefficient import xu_2007
@@ -333,7 +333,7 @@ def test_inputs_carry_their_marks(variant):
     tables = ("gears", "materials", "lubricant", "roughness", "operation", "models", "formulas")
     values = {key for table in tables for key, _ in leaves({table: document.tree[table]})}
     assert values - document.provenance.keys() == {"gears.family"}
-    assert "Xiong" in cite(TREE["source"])
+    assert "Xiong" in citation_text(TREE["source"])
 
 
 def test_fitted_inputs_are_called_so():

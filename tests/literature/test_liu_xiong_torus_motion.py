@@ -9,7 +9,7 @@ from pitchpoint._jax import jax
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.liu_xiong_torus.motion import course
+from pitchpoint.published.liu_xiong_torus.motion import torus_motion
 
 # ------------------------------------------------------------------ the motion
 
@@ -75,7 +75,7 @@ def by_hand(drive, time):
 @pytest.mark.whole
 def test_motion_is_that_of_another_solver():
     drive, turn = driven("heavy", 2, "torus")
-    moved = jax.device_get(course(drive, turn))
+    moved = jax.device_get(torus_motion(drive, turn))
     inside = np.arange(moved.time.size) % 1500 % 7 == 3  # none of them at a hand-over
     other = by_hand(drive, moved.time[inside])
     assert np.ptp(other) > 50e-6
@@ -85,7 +85,7 @@ def test_motion_is_that_of_another_solver():
 def test_work_of_all_forces_is_the_kinetic_energy():
     """Friction with its printed signs among them: the energy that it creates is in the motion."""
     drive, turn = driven("heavy", 2, "torus")
-    moved = jax.device_get(course(drive, turn))
+    moved = jax.device_get(torus_motion(drive, turn))
     step = np.diff(moved.time)
 
     def summed(power):
@@ -117,7 +117,7 @@ def test_courses_of_a_mesh_cycle_are_those_of_the_motion():
     data = read("heavy").isel(point=1)
     for pair in ("torus", "standard"):
         drive, turn = driven("heavy", 1, pair)
-        moved = jax.device_get(course(drive, turn))
+        moved = jax.device_get(torus_motion(drive, turn))
         last = (moved.time >= 2.0 * float(drive.period)) & (moved.time <= 3.0 * float(drive.period))
         weight = np.where(last, moved.weight, 0.0)
         inside = np.repeat(np.arange(moved.time.size // 1500), 1500)
@@ -190,7 +190,7 @@ def test_few_places_of_the_library_on_the_path_are_refused():
 
 
 def test_a_motion_that_is_not_found_is_told(monkeypatch):
-    monkeypatch.setattr(printed, "figures", lambda *_: {"largest_error": np.array(np.inf)})
+    monkeypatch.setattr(printed, "motion_figures", lambda *_: {"largest_error": np.array(np.inf)})
     with pytest.raises(ConvergenceError, match="motion of the torus pair"):
         read("validation")
 

@@ -13,7 +13,7 @@ import xarray as xr
 from pitchpoint._jax import jnp
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import leaves
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.published.publication import ReadingPoint
@@ -29,7 +29,7 @@ def rows():
 
 def computed(changes):
     """Comparison of the case with some inputs changed."""
-    name, tree = find("tian2024")
+    name, tree = find_case("tian2024")
     variant = Variant(tree, name, "as_published", changes)
     targets = variant.built({}).case.targets
     needed = {target.reads for target in targets}
@@ -86,7 +86,7 @@ def test_a_small_change_of_the_inputs_makes_rows_miss(changes):
 
 def of_case_1(**other):
     """Courses and numbers of case 1, with other models."""
-    variant = Variant(*reversed(find("tian2024")), "as_published")
+    variant = Variant(*reversed(find_case("tian2024")), "as_published")
     study = variant.built({}).case.studies["case_1"]
     built = variant.built(dict(leaves(study.change)))
     models = tuple(dataclasses.replace(one, **other) for one in built.models)

@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from xu2021_in_print import END, NAME, OIL, RADII, TREE, VARIANTS, case, curvature, mapped, speed
 
 from pitchpoint.cases.document import leaves, resolve
-from pitchpoint.citations import cite
+from pitchpoint.citations import citation_text
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.published.xu2021.printed import (
     density,
@@ -19,8 +19,8 @@ from pitchpoint.published.xu2021.printed import (
     printed_viscosity,
     relative_radius,
     roelands_exponents,
-    tooth_forces,
     viscosity,
+    zone_tooth_forces,
 )
 
 LOAD = {"torque": 400.0, "base_radius": RADII[1], "teeth": 202.0}
@@ -31,8 +31,8 @@ LOAD = {"torque": 400.0, "base_radius": RADII[1], "teeth": 202.0}
 
 def test_printed_number_of_teeth_leaves_the_zone_of_positive_load():
     assert (printed_count(teeth=202), loaded_count(teeth=202)) == (20, 12)
-    within = tooth_forces(largest=1.0, teeth=202, count=12)
-    beyond = tooth_forces(largest=1.0, teeth=202, count=13)
+    within = zone_tooth_forces(largest=1.0, teeth=202, count=12)
+    beyond = zone_tooth_forces(largest=1.0, teeth=202, count=13)
     assert within.shape == (25,)
     assert within.min() > 0.0 > beyond.min()
     assert loaded_count(teeth=208) == 12, "a tooth on the end of the zone carries nothing"
@@ -40,7 +40,7 @@ def test_printed_number_of_teeth_leaves_the_zone_of_positive_load():
 
 def test_printed_force_pulls_on_the_outermost_teeth():
     largest = largest_force(count=20, **LOAD)
-    forces = tooth_forces(largest=largest, teeth=202, count=20)
+    forces = zone_tooth_forces(largest=largest, teeth=202, count=20)
     assert largest == pytest.approx(940.5, abs=0.05)
     assert forces.min() == pytest.approx(-747.0, abs=0.5)
     assert (forces < 0.0).sum() == 16
@@ -50,7 +50,7 @@ def test_two_zones_close_the_torque():
     one, two = (largest_force(count=12, zones=zones, **LOAD) for zones in (1, 2))
     assert one == pytest.approx(524.1, abs=0.05)
     assert two == pytest.approx(262.0, abs=0.05)
-    forces = tooth_forces(largest=two, teeth=202, count=12)
+    forces = zone_tooth_forces(largest=two, teeth=202, count=12)
     assert 2.0 * RADII[1] * forces.sum() == pytest.approx(400.0, rel=1e-12)
 
 
@@ -175,7 +175,7 @@ def test_inputs_carry_their_marks(variant):
     }
     unmarked = values - document.provenance.keys() - {"gears.family"}
     assert {key for key in unmarked if not key.startswith("models.friction")} == set()
-    assert "Xu" in cite(TREE["source"])
+    assert "Xu" in citation_text(TREE["source"])
 
 
 @pytest.mark.whole

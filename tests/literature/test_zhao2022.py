@@ -11,13 +11,19 @@ from zhao2022_in_print import NAME, STEP, TREE, VARIANTS, built, case, readings
 
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import leaves, resolve
-from pitchpoint.citations import cite
+from pitchpoint.citations import citation_text
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.zhao2022 import printed
 from pitchpoint.published.zhao2022.publication import PUBLICATION
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear, StatedContact
-from pitchpoint.published.zhao2022.wear import Strips, march, marched, severe, strips_of
+from pitchpoint.published.zhao2022.wear import (
+    Strips,
+    march,
+    march_cycles,
+    march_to_severe_wear,
+    strips_of,
+)
 from pitchpoint.results.target_rows import counts
 from pitchpoint.status import Code
 
@@ -186,7 +192,7 @@ def value(name, study="double_arc", **changes):
 def test_severe_wear_begins_with_the_tip_land_or_the_stated_depth():
     for study, limit in (("double_arc", 0.18e-3), ("involute", 0.12299e-3)):
         assert value("severe_depth", study) == pytest.approx(limit, rel=1e-4)
-        whole = severe(strips(study), rate=KAPPA, limit=limit)
+        whole = march_to_severe_wear(strips(study), rate=KAPPA, limit=limit)
         cycles = whole.cycles_to(limit)
         assert whole.depth[-2].max() <= limit < whole.depth[-1].max()
         assert whole.cycles[-2] <= cycles <= whole.cycles[-1]
@@ -205,7 +211,7 @@ def test_depth_not_reached_has_no_cycles():
 def test_flank_that_would_lie_flat_ends_the_march():
     """Areas summed from the tip, with the coefficient of strips."""
     heavy = strips(**{"formulas.area": "cumulative", "operation.torque": "32 N m"})
-    whole = marched(heavy, rate=KAPPA, cycles=6.52e9)
+    whole = march_cycles(heavy, rate=KAPPA, cycles=6.52e9)
     assert whole.cycles[-1] < 6.52e9
     assert np.isnan(
         value(
@@ -218,12 +224,12 @@ def test_flank_that_would_lie_flat_ends_the_march():
 def test_volume_from_depth_is_that_of_archard():
     """Force over hardness times sliding, with forces of eqs. 19 and 20 that know of no area."""
     one = strips().without_offset()
-    whole = marched(one, rate=KAPPA, cycles=1e3)
+    whole = march_cycles(one, rate=KAPPA, cycles=1e3)
     removed = float(np.sum(whole.depth[-1]) * one.step * one.face_width)
     work = float(np.sum(one.force / np.cos(one.angle)) * one.step)
     assert removed == pytest.approx(KAPPA * work * 1e3, rel=1e-8)
     # Block by block, with strips as long as they have become.
-    far = marched(one, rate=KAPPA, cycles=6.52e9)
+    far = march_cycles(one, rate=KAPPA, cycles=6.52e9)
     angles = np.stack([one.worn(depth)[0] for depth in far.depth[:-1]])
     step = far.step[:-1]
     volume = np.sum(np.diff(far.depth, axis=0) * step) * one.face_width
@@ -233,7 +239,7 @@ def test_volume_from_depth_is_that_of_archard():
 
 def test_depth_never_falls_and_blocks_are_small_enough():
     one = strips(**{"operation.torque": "32 N m"})
-    whole = marched(one, rate=KAPPA, cycles=6.52e9)
+    whole = march_cycles(one, rate=KAPPA, cycles=6.52e9)
     finer = march(one, rate=KAPPA, block=6.52e9 / 400, blocks=400)
     assert (np.diff(whole.depth, axis=0) > 0.0).all()
     np.testing.assert_allclose(finer.depth[-1], whole.depth[-1], rtol=1e-3)
@@ -448,7 +454,7 @@ def test_inputs_carry_their_marks(variant):
     }
     unmarked = values - document.provenance.keys() - {"gears.family"}
     assert {key for key in unmarked if not key.startswith("models.friction")} == set()
-    assert "zhao" in cite(TREE["source"]).lower()
+    assert "zhao" in citation_text(TREE["source"]).lower()
 
 
 def test_errors_of_the_paper_are_issues_of_the_case():

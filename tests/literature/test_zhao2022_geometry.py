@@ -10,10 +10,10 @@ from pitchpoint.published.zhao2022.printed import (
     arc_distance,
     closure_residual,
     deflection_offset,
+    half_zone_forces,
     largest_tangential_load,
     printed_tooth_forces,
     recovered_torque,
-    tooth_forces,
 )
 
 ZONE = {"half_zone": np.deg2rad(36.0), "diameter": 59.4e-3, "face_width": 12e-3}
@@ -36,7 +36,7 @@ def test_largest_load_closes_the_torque_integral():
 
 
 def test_corrected_forces_close_the_torque():
-    forces = tooth_forces(load=LOAD, step=STEP, **ZONE)
+    forces = half_zone_forces(load=LOAD, step=STEP, **ZONE)
     assert forces.shape == (20,)
     assert forces.max() == pytest.approx(10.57, abs=0.005)
     assert np.all(np.diff(forces) > 0.0)
@@ -49,7 +49,7 @@ def test_sum_converges_to_the_integral():
     """The middle rule errs by the square of the step."""
     error = [
         recovered_torque(
-            forces=tooth_forces(load=LOAD, step=STEP / n, **ZONE), diameter=ZONE["diameter"]
+            forces=half_zone_forces(load=LOAD, step=STEP / n, **ZONE), diameter=ZONE["diameter"]
         )
         - 16.0
         for n in (1, 2, 4)

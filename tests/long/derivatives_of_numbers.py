@@ -12,7 +12,7 @@ import numpy as np
 
 import pitchpoint as pp
 from pitchpoint.errors import PitchpointError
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 
 FAR = 5e-3
 """Relative distance of two derivatives that is listed, beside what solvers leave."""
@@ -78,7 +78,7 @@ OF_STRENGTH = {
 
 def figures_of_run(case: pp.Case) -> dict[str, float]:
     """Figures of a run of the case."""
-    (outcome,) = run(case, analyses=["operation", "strength"]).values()
+    (outcome,) = run_case(case, analyses=["operation", "strength"]).values()
     point = outcome.parts["operation"]
     found = {
         name: float(point[name].values.ravel()[0])

@@ -24,8 +24,8 @@ from pitchpoint.exports.files import EVALUATOR, export
 from pitchpoint.exports.simulators import TARGETS, Asked, hand_over
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.input.tables import tag
-from pitchpoint.runs.case import held
-from pitchpoint.runs.run import Outcome, load_case, open_result, run
+from pitchpoint.runs.case import selected_variants
+from pitchpoint.runs.run import Outcome, load_case, open_outcomes, run_case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MOST_SECONDS = 2.0
@@ -50,7 +50,7 @@ def cases() -> dict[str, str]:
     """Examples by name of their file, published cases, and the sample of each family."""
     files = sorted(EXAMPLES.glob("*.toml"))
     samples = {f"sample of {tag(table)}": str(sample_of(table)) for table in TABLES}
-    published = {name: name for name in library.names()}
+    published = {name: name for name in library.case_names()}
     return {file.stem: str(file) for file in files} | published | samples
 
 
@@ -59,9 +59,9 @@ def computed(case: str, folder: Path) -> dict[str, Outcome]:
     if not (folder / "run.json").exists():
         built = load_case(case, settings=ASKED)
         parts = [name for name in PARTS if ANALYSES[name].why_not(built) is None]
-        first = held(case, [], ASKED)[0].variant
-        run(case, folder=folder, only=[first], settings=ASKED, analyses=parts)
-    return open_result(folder)
+        first = selected_variants(case, [], ASKED)[0].variant
+        run_case(case, folder=folder, only=[first], settings=ASKED, analyses=parts)
+    return open_outcomes(folder)
 
 
 def exporters(outcomes: dict[str, Outcome], folder: Path) -> dict[str, Callable[[], object]]:

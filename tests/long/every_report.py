@@ -19,10 +19,10 @@ from browser import Browser, browser
 from screens import faults_of_the_screen
 from seen import faults_on_paper, faults_on_screen, pages, whole
 
-from pitchpoint.cases.library import names
+from pitchpoint.cases.library import case_names
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.case import Case
-from pitchpoint.runs.run import open_result, run
+from pitchpoint.runs.run import open_outcomes, run_case
 from pitchpoint.runs.study import study
 from pitchpoint.sizing.sizing import size
 from pitchpoint.views.report import write_report
@@ -47,14 +47,14 @@ WINDOWS = ((1280, "light"), (1280, "dark"), (500, "light"))
 def cases() -> dict[str, str]:
     """Examples by name of their file, and published cases."""
     files = sorted(EXAMPLES.glob("*.toml"))
-    return {file.stem: str(file) for file in files} | {name: name for name in names()}
+    return {file.stem: str(file) for file in files} | {name: name for name in case_names()}
 
 
 def report(case: str, folder: Path) -> Path:
     """The report of a result that is kept, computed before where it is not finished."""
-    kept = open_result(folder) if (folder / "run.json").exists() else {}
+    kept = open_outcomes(folder) if (folder / "run.json").exists() else {}
     if not kept or not all(one.manifest["finished"] for one in kept.values()):
-        kept = run(case, folder=folder)
+        kept = run_case(case, folder=folder)
     write_report(kept, folder / "report.html")
     return folder / "report.html"
 
@@ -114,7 +114,7 @@ def main(folder: Path, names: list[str]) -> int:
                     print(f"  {fault}", flush=True)
                 continue
             path = report(known.get(name, name), folder / name)
-            of_the_screen = faults_of_the_screen(open_result(folder / name))
+            of_the_screen = faults_of_the_screen(open_outcomes(folder / name))
             for fault in chain(of_the_screen, faults(page, path, folder / f"{name}.seen")):
                 count += 1
                 print(f"  {fault}", flush=True)

@@ -24,7 +24,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH
-from pitchpoint.lubrication.ehl.patch.solve import solve, touches
+from pitchpoint.lubrication.ehl.patch.solve import solve, touches_dry
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid
@@ -115,7 +115,7 @@ def main(count: int = 100, nodes: int = 129, seed: int = 13) -> int:
         sentence = ""
         try:
             _, problem, state, _ = solve(one.contact, nodes, nodes - 1)
-            thin = touches(problem, state)
+            thin = touches_dry(problem, state)
             found = state.residual < ENOUGH and not thin
             sentence = f"residual {state.residual:.0e} after {state.steps} steps"
             sentence += ", and the film is thinner than the grid can show" if thin else ""

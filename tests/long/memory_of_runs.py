@@ -29,12 +29,12 @@ def main(names: list[str]) -> int:
     with tempfile.TemporaryDirectory() as empty:
         os.environ["XDG_CACHE_HOME"] = empty
         from pitchpoint import programs  # its cache is chosen as it is imported
-        from pitchpoint.runs.run import run
+        from pitchpoint.runs.run import run_case
 
         start = taken()
         print(f"{start} MB at the start")
         for name in names:
-            run(str(EXAMPLES / f"{name}.toml"))
+            run_case(str(EXAMPLES / f"{name}.toml"))
             print(f"{taken()} MB after {name}, at most {taken('VmHWM')}", flush=True)
         programs.forget()
         left = taken() - start

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import PitchpointError
 from pitchpoint.runs.run import rows_of
@@ -74,7 +74,7 @@ def inputs(tree: Mapping[str, Any], variant: str) -> Iterator[Path]:
 
 def main(case: str, variant: str = "as_published") -> None:
     """Print what feels nothing."""
-    name, tree = find(case)
+    name, tree = find_case(case)
     base = rows_of(Variant(tree, name, variant))
     steady, deaf = {place for place, row in enumerate(base) if row.computed is not None}, []
     for path in inputs(tree, variant):

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.errors import InputError
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 
 BELOW = 0.9
 TURNS = 1e7
@@ -120,7 +120,7 @@ def worn(
         if not case.exists():
             case = Path(folder) / "wear.toml"
             case.write_text(CASE, "utf-8")
-        (outcome,) = run(
+        (outcome,) = run_case(
             str(case), settings={**settings, **grid, **march}, analyses=["wear"]
         ).values()
     return outcome.parts["wear"]

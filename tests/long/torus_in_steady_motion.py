@@ -3,7 +3,7 @@
 import numpy as np
 from torus_in_print import read
 
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.published.liu_xiong_torus import steady
 from pitchpoint.results.target_rows import counts
@@ -12,7 +12,7 @@ from pitchpoint.status import Code
 
 
 def test_rows_of_the_corrected_motion_miss_where_flanks_would_pull_and_where_they_ring():
-    found = compare_case(find("liu_xiong_torus")[0], "physical")[2]
+    found = compare_case(find_case("liu_xiong_torus")[0], "physical")[2]
     assert {kind: dict(each) for kind, each in counts(found).items()} == {
         "reference": {"pass": 143, "miss": 4}
     }

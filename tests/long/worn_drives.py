@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from pitchpoint.analyses.registry import ANALYSES
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SHARED = {"models.load_sharing": "from_stiffness"}
@@ -33,7 +33,7 @@ AFTERWARDS = ("torsion", "kinematic_error", "stiffness")
 
 def figures(case: str, settings: dict[str, Any]) -> dict[str, float]:
     """What is looked at of a drive, by name."""
-    (outcome,) = run(case, settings=SHARED | settings).values()
+    (outcome,) = run_case(case, settings=SHARED | settings).values()
     torsion = outcome.parts["torsion"]
     rated = torsion.isel(torque=torsion.sizes["torque"] // 2)
     found = {
@@ -54,7 +54,7 @@ def main(name: str) -> bool:
     with tempfile.TemporaryDirectory() as folder:
         ANALYSES._entries = {"wear": every["wear"]}
         began = time.monotonic()
-        (outcome,) = run(case, folder=folder, settings=SHARED | DRY | asked).values()
+        (outcome,) = run_case(case, folder=folder, settings=SHARED | DRY | asked).values()
         data = outcome.parts["wear"]
         print(
             f"{name}: {data.sizes['step'] - 1} steps in {time.monotonic() - began:.0f} s, "

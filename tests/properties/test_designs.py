@@ -12,10 +12,14 @@ from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import (
     build_cylindrical_pair,
     build_cylindrical_pairs,
-    designed,
+    designed_pair,
 )
-from pitchpoint.gears.strain_wave.design import INTERFERENCE, build_strain_wave, build_strain_waves
-from pitchpoint.gears.strain_wave.design import designed as designed_wave
+from pitchpoint.gears.strain_wave.design import (
+    INTERFERENCE,
+    build_strain_wave,
+    build_strain_waves,
+    designed_strain_wave,
+)
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
 from pitchpoint.programs import program
 from pitchpoint.status import Code
@@ -110,7 +114,7 @@ def _figures(pair, shift, angle):
 
     def figures(at):
         changed = dataclasses.replace(pair, profile_shift=at[:2], pressure_angle=at[2])
-        found, _ = designed(changed)
+        found, _ = designed_pair(changed)
         lengths = jnp.stack([found.centre_distance, *found.base_radii, *found.tip_radii])
         return jnp.concatenate([found.contact_ratio[None], lengths / found.module])
 
@@ -175,7 +179,7 @@ def _clearances(drive, deflection):
 
     def clearances(at):
         line = dataclasses.replace(drive.line, deflection=at * drive.module)
-        found, _ = designed_wave(dataclasses.replace(drive, line=line))
+        found, _ = designed_strain_wave(dataclasses.replace(drive, line=line))
         return (
             found.nearest(jnp.deg2rad(jnp.array([-25.0, -20.0, -14.0, -9.0]))).clearance
             / found.module
@@ -208,4 +212,4 @@ def _lowered(groove, by):
 
 @program
 def _status(drive):
-    return designed_wave(drive)[1]
+    return designed_strain_wave(drive)[1]

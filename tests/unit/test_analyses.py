@@ -16,7 +16,7 @@ from sound import PAIR
 from pitchpoint.analyses import studies
 from pitchpoint.analyses.analysis import Analysis, Unasked
 from pitchpoint.analyses.registry import ANALYSES, register
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cli import main
 from pitchpoint.errors import InputError
@@ -24,14 +24,21 @@ from pitchpoint.results.store import dataset, load
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run as running
-from pitchpoint.runs.catalogue import figures
+from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.jobs import job_of
-from pitchpoint.runs.matrix import matrix, page
-from pitchpoint.runs.run import Outcome, describe, open_result, pieces_of, run, run_piece
-from pitchpoint.views.figures import PALETTE, Figure, Key, Panel, display, layout, plain
+from pitchpoint.runs.matrix import matrix, matrix_page
+from pitchpoint.runs.run import (
+    Outcome,
+    open_outcomes,
+    pieces_of,
+    run_case,
+    run_piece,
+    uncomputed_manifests,
+)
+from pitchpoint.views.figures import PALETTE, Figure, Key, Panel, display, layout, legend_line
 from pitchpoint.views.registry import SECTIONS, register_section
-from pitchpoint.views.report import render
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.report import report_page
+from pitchpoint.views.screen import head, screen_value
 from pitchpoint.views.section import (
     Block,
     KeyFigure,
@@ -83,7 +90,7 @@ def swept(tmp_path: Path) -> Path:
 def record(swept: Path) -> Path:
     """The record of the case, without a result yet."""
     path = swept.with_name("manifest.json")
-    path.write_text(json.dumps(describe(str(swept))[0]), "utf-8")
+    path.write_text(json.dumps(uncomputed_manifests(str(swept))[0]), "utf-8")
     return path
 
 
@@ -92,7 +99,7 @@ def test_a_piece_of_a_sweep_is_computed_elsewhere_from_its_description_alone(
 ) -> None:
     monkeypatch.setattr(studies, "PIECE", 2)
     job = job_of(
-        Variant(*reversed(find(str(record.with_name("pair.toml")))), "default"), "study_hot"
+        Variant(*reversed(find_case(str(record.with_name("pair.toml")))), "default"), "study_hot"
     )
     first, second = job.pieces
     assert second == {"analysis": "study_hot", "first": 2, "stop": 3}
@@ -149,7 +156,7 @@ def test_the_matrix_says_yes_or_why_not_and_stands_in_the_docs() -> None:
     assert rows["joint"]["strain_wave"] == "yes"
     assert "no line of action" in rows["vibration"]["strain_wave"]
     assert rows["loss_map"]["ball_on_disc"] == "nothing is transmitted by a test rig"
-    assert page() == (DOCS / "analyses.md").read_text("utf-8")
+    assert matrix_page() == (DOCS / "analyses.md").read_text("utf-8")
 
 
 # ---- an analysis of a user's own
@@ -206,17 +213,17 @@ def test_an_analysis_of_ones_own_is_run_shown_compared_and_resumed(
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run(str(case), folder=tmp_path / "out", progress=Stopped())
+        run_case(str(case), folder=tmp_path / "out", progress=Stopped())
     assert (tmp_path / "out" / "default" / "passing.0000.nc").is_file()
-    outcome = run(str(case), folder=tmp_path / "out")["default"]
+    outcome = run_case(str(case), folder=tmp_path / "out")["default"]
     assert COMPUTED == [100.0, 200.0]  # the first piece once, before the interruption
     assert outcome.parts["passing"]["teeth_passed"].values.tolist() == [2300.0, 4600.0]
     assert outcome.parts["passing"]["teeth_passed"].attrs["symbol"] == "n z"
-    told = figures(outcome)
+    told = figures_by_law(outcome)
     assert told["passing"] == {"teeth_passed": [2300.0, 4600.0]}
     assert told["units"] == {"teeth_passed": "1/s"}
     assert [row["verdict"] for row in told["rows"]] == ["pass"]
-    assert open_result(tmp_path / "out")["default"].manifest["parts"] == ["passing"]
+    assert open_outcomes(tmp_path / "out")["default"].manifest["parts"] == ["passing"]
 
 
 def test_a_march_goes_on_from_its_last_piece(alone: None, tmp_path: Path) -> None:
@@ -230,8 +237,8 @@ def test_a_march_goes_on_from_its_last_piece(alone: None, tmp_path: Path) -> Non
                 raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run(str(case), folder=tmp_path / "out", progress=Stopped())
-    outcome = run(str(case), folder=tmp_path / "out")["default"]
+        run_case(str(case), folder=tmp_path / "out", progress=Stopped())
+    outcome = run_case(str(case), folder=tmp_path / "out")["default"]
     assert COMPUTED == [100.0, 50.0, 25.0]
     assert outcome.parts["passing"]["speed"].values.tolist() == [100.0, 50.0, 25.0]
     begun = run_piece(str(case), {"analysis": "passing", "speed": 100.0})
@@ -243,9 +250,9 @@ def test_one_that_lacks_something_has_no_part(alone: None, tmp_path: Path) -> No
     register(toy(lacks=lambda built: "the teeth stand still"))
     case = tmp_path / "pair.toml"
     case.write_text(PAIR, "utf-8")
-    outcome = run(str(case))["default"]
+    outcome = run_case(str(case))["default"]
     assert outcome.parts == {}
-    assert figures(outcome)["passing"] == {}
+    assert figures_by_law(outcome)["passing"] == {}
     with pytest.raises(InputError, match="no part 'passing': the teeth stand still"):
         run_piece(str(case), {"analysis": "passing", "speed": 1.0})
 
@@ -258,7 +265,7 @@ def test_programs_are_given_back_between_parts_too(
     case.write_text(PAIR, "utf-8")
     monkeypatch.setattr(running, "bound_programs", lambda: asked.update(["parts"]))
     for computed in (1, 1):  # what is read from disk takes no memory
-        run(str(case), folder=tmp_path / "out")
+        run_case(str(case), folder=tmp_path / "out")
         assert asked["parts"] == computed
 
 
@@ -271,7 +278,10 @@ def shown_passing() -> Section:
     def rows(outcome: Outcome) -> list[dict[str, str]]:
         data = outcome.parts["passing"]
         return [
-            {head("speed"): shown("speed", float(speed)), head("teeth_passed"): f"{float(teeth):g}"}
+            {
+                head("speed"): screen_value("speed", float(speed)),
+                head("teeth_passed"): f"{float(teeth):g}",
+            }
             for speed, teeth in zip(data["speed"], data["teeth_passed"], strict=True)
         ]
 
@@ -279,7 +289,7 @@ def shown_passing() -> Section:
         for _, _, outcome in page.each("passing"):
             data, key = outcome.parts["passing"], Key("driver", PALETTE[0])
             yield Paragraph("Teeth that go by at the driver.")
-            line = plain(key, display("speed", data["speed"]), data["teeth_passed"], "1/s")
+            line = legend_line(key, display("speed", data["speed"]), data["teeth_passed"], "1/s")
             figure = Figure("passing_speed", "Teeth that pass", [line], layout("n", "n z"))
             yield Panel("", [figure])
             cells = rows(outcome)
@@ -342,9 +352,9 @@ def test_a_section_that_lacks_something_says_so_once_at_the_end(
     case.write_text(PAIR, "utf-8")
     register(toy(lacks=lambda built: "the teeth stand still"))
     register_section(shown_passing())
-    page = render(run(str(case)))
+    page = report_page(run_case(str(case)))
     assert page.count("the teeth stand still") == 1
     assert "Not shown: Passing (the teeth stand still)." in page
     assert '<section id="passing">' not in page
     register(toy(lacks=lambda built: Unasked("nobody counts the teeth")))
-    assert "Not shown" not in render(run(str(case)))
+    assert "Not shown" not in report_page(run_case(str(case)))

@@ -8,8 +8,17 @@ import numpy as np
 import pytest
 
 import pitchpoint
-from pitchpoint.analyses.caveats import range_left, told_of_law
-from pitchpoint.doubts import BRIEF, Doubt, apart, as_doubt, doubts_of, fails, in_stage, stored
+from pitchpoint.analyses.caveats import law_sentences, range_left
+from pitchpoint.doubts import (
+    BRIEF,
+    Doubt,
+    as_doubt,
+    doubts_of,
+    fails,
+    in_stage,
+    ranked_doubts,
+    stored,
+)
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.registry import ASPERITY_LOAD, FILM_THICKNESS, LAWS
 
@@ -64,7 +73,7 @@ def test_every_doubt_fits_a_line(call: ast.Call) -> None:
 def test_a_range_that_is_left_fits_beside_the_name_of_its_law(law: Limited) -> None:
     partly = {"weight": np.array([0.123, 0.877])}
     run = {f"outside {law.name} {name}": np.array([True, False]) for name in law.ranges}
-    for doubt in told_of_law(law, range_left(law, {**partly, **run}, "film")):
+    for doubt in law_sentences(law, range_left(law, {**partly, **run}, "film")):
         assert "12 % of a cycle" in as_doubt(doubt).brief
         assert len(as_doubt(doubt).brief) <= BRIEF, as_doubt(doubt).brief
 
@@ -74,7 +83,7 @@ def test_the_brief_goes_where_the_sentence_goes() -> None:
     (kept,) = doubts_of(stored([tips]))
     assert (kept, kept.brief) == (tips, tips.brief)
     other = Doubt(tips.replace("gear 1", "gear 2"), brief="Tips of gear 2: thin.")
-    (both,) = apart([in_stage(2, tips), in_stage(2, other)])["warnings"]
+    (both,) = ranked_doubts([in_stage(2, tips), in_stage(2, other)])["warnings"]
     assert both.brief == "Stage 2: tips of gear 1 (gear 2 alike): thin."
     failing = fails("teeth melt at 300 degC, of which much is said.", "teeth melt at 300 degC.")
     assert in_stage(1, failing).brief == "Fails: stage 1: teeth melt at 300 degC."

@@ -60,7 +60,7 @@ def test_nor_one_that_belongs_to_another_or_can_be_replaced(
     folder.parent.chmod(0o777)
     _jax._enable_cache()
     folder.parent.chmod(0o1777)  # as /tmp: others cannot rename what is not theirs
-    assert kept.private(folder)
+    assert kept.is_private(folder)
     monkeypatch.setattr(os, "geteuid", lambda: folder.stat().st_uid + 1)
     _jax._enable_cache()
     assert not told

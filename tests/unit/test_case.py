@@ -9,10 +9,10 @@ import pytest
 import xarray as xr
 
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.library import names
+from pitchpoint.cases.library import case_names
 from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
-from pitchpoint.runs.case import Case, held
+from pitchpoint.runs.case import Case, selected_variants
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 TABLES: dict[str, Any] = {
@@ -98,7 +98,7 @@ def test_what_is_no_case() -> None:
     with pytest.raises(InputError, match="3 was given; a case is a file, the name of a shipped"):
         Case(3)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="None was given; a case is a file"):
-        held(None)  # type: ignore[arg-type]
+        selected_variants(None)  # type: ignore[arg-type]
     with pytest.raises(InputError, match='"printed" is not a variant of this case'):
         Case("tian2024", variant="printed")
     with pytest.raises(InputError, match=r"case: gears\.teeth: is missing"):
@@ -132,7 +132,7 @@ def test_a_case_says_in_a_line_what_it_is(case: Case) -> None:
 
 
 def test_settings_of_a_run_go_on_top(case: Case) -> None:
-    (variant,) = held(case.set(torque=5.0), settings={"operation.torque": "6 N m"})
+    (variant,) = selected_variants(case.set(torque=5.0), settings={"operation.torque": "6 N m"})
     assert validate(variant.document()).operation.torque == 6.0
 
 
@@ -142,7 +142,7 @@ def test_a_change_of_form_leaves_out_what_the_new_form_does_not_have() -> None:
     assert again["gears.tooth.form"] == "involute"
 
 
-@pytest.mark.parametrize("source", [*names(), *EXAMPLES], ids=lambda one: Path(one).stem)
+@pytest.mark.parametrize("source", [*case_names(), *EXAMPLES], ids=lambda one: Path(one).stem)
 def test_written_as_toml_it_is_the_same_case(source: str | Path) -> None:
     """Values to the last bit, with their status, place and remark."""
     case = Case(source)

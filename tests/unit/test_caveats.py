@@ -11,7 +11,7 @@ import pytest
 from pitchpoint.analyses import caveats, four_quadrants
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import SolidInUse, failures
-from pitchpoint.doubts import apart, fails, moves
+from pitchpoint.doubts import fails, moves, ranked_doubts
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.applicability import limits_words
@@ -173,7 +173,7 @@ def test_beyond_its_table_a_molten_plastic_is_refused_as_such() -> None:
 
 def test_what_cannot_be_is_told_apart_and_once() -> None:
     told = ["a tip is pointed.", fails("teeth melt."), "a tip is pointed.", "a root is thin."]
-    assert apart(told) == {
+    assert ranked_doubts(told) == {
         "implausible": ["Fails: teeth melt."],
         "warnings": ["a tip is pointed.", "a root is thin."],
     }

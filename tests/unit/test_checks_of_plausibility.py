@@ -13,7 +13,7 @@ from pitchpoint.analyses.caveats import OF_CYCLES, AtWork
 from pitchpoint.analyses.plausibility import OF_CONTACTS, OF_RESULTS, implausible, unlikely
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import BY_VALUE, SolidInUse
-from pitchpoint.citations import cite
+from pitchpoint.citations import citation_text
 from pitchpoint.doubts import Checks
 from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.lubrication.ehl.doubts import OF_LINE_FILMS, OF_LINE_INPUTS
@@ -219,4 +219,4 @@ def test_every_check_says_what_it_rests_on(checks: Checks[Any]) -> None:
     assert [*checks]
     for check in checks:
         assert check.criterion.endswith("."), check.asks
-        assert all(map(cite, check.sources)), check.asks
+        assert all(map(citation_text, check.sources)), check.asks

@@ -13,7 +13,7 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.views import show
 from pitchpoint.views.figures import display, short_axis
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 WRONG = [
     ("angel=arcmin", '"angel" is no kind of quantity with units; did you mean angle'),
@@ -81,7 +81,7 @@ def test_numbers_and_their_units_change_together() -> None:
     assert show.quantity("torsional_stiffness", stiffness) == "88.4 kN m/rad"
     with shown_in({"torsional stiffness": "N m/arcmin", "temperature": "K"}):
         assert show.quantity("torsional_stiffness", stiffness) == "25.71 N m/arcmin"
-        assert (head("torsional_stiffness"), shown("torsional_stiffness", stiffness)) == (
+        assert (head("torsional_stiffness"), screen_value("torsional_stiffness", stiffness)) == (
             "torsional stiffness [N m/arcmin]",
             "25.71",
         )
@@ -93,10 +93,10 @@ def test_numbers_and_their_units_change_together() -> None:
 def test_small_values_in_large_units_are_not_taken_for_rounding() -> None:
     """1e-10 m is a tenth of a nanometre; what is left of zero stays zero in every unit."""
     with shown_in({"small length": "m"}):
-        assert shown("depth_per_turn", 1e-10) == "1e−10"
-        assert shown("film_thickness", 1e-17) == "0"
+        assert screen_value("depth_per_turn", 1e-10) == "1e−10"
+        assert screen_value("film_thickness", 1e-17) == "0"
     with shown_in({"small length": "nm"}):
-        assert shown("film_thickness", 1e-17) == "0"
+        assert screen_value("film_thickness", 1e-17) == "0"
 
 
 def test_a_choice_holds_within_its_block_and_thread_alone() -> None:

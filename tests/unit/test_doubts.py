@@ -13,10 +13,10 @@ from pitchpoint.doubts import (
     FELT,
     LEFT_OUT,
     Doubt,
-    apart,
     doubts_of,
     fails,
     in_stage,
+    ranked_doubts,
     reworded,
     stored,
     worst_of_kinds,
@@ -26,7 +26,7 @@ from pitchpoint.runs.run import Outcome
 
 
 def warned(*sentences: str) -> list[str]:
-    return apart(sentences)["warnings"]
+    return ranked_doubts(sentences)["warnings"]
 
 
 def test_what_moves_most_stands_first_and_trifles_are_silent() -> None:
@@ -62,7 +62,7 @@ def test_other_numbers_or_several_gears_are_other_sentences() -> None:
 
 
 def test_stages_that_fail_alike_fail_once_and_are_not_doubtful_beside() -> None:
-    told = apart([*(in_stage(n, fails("teeth melt.")) for n in (1, 2)), "teeth melt."])
+    told = ranked_doubts([*(in_stage(n, fails("teeth melt.")) for n in (1, 2)), "teeth melt."])
     assert told == {"implausible": ["Fails: stages 1 and 2: teeth melt."], "warnings": []}
 
 

@@ -15,7 +15,7 @@ from pitchpoint.analyses.tooth_life import cycles_on_curve, cycles_to_failure, l
 from pitchpoint.cases.duty import _heating
 from pitchpoint.doubts import BRIEF, doubts_of
 from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
-from pitchpoint.duty_cycle.energy import driver_course, energies, mean_load
+from pitchpoint.duty_cycle.energy import driver_course, duty_energies, mean_load
 from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE, first_failure
 from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import LoadHistory, load_history, load_steps
@@ -39,7 +39,7 @@ def history() -> LoadHistory:
 def test_energies_are_those_of_the_map_by_hand() -> None:
     lift, lower, brake = (2.0 * 30.0 * 2.0, 1.0 * 40.0 * 4.0, 3.0 * 20.0 * 5.0)
     lost = [2.0 * 5.0 * 2.0, 1.0 * 6.0 * 4.0, 3.0 * 4.0 * 5.0]
-    of = energies(history(), driver_course(table(), history()))
+    of = duty_energies(history(), driver_course(table(), history()))
     assert of["output_energy"] == pytest.approx(lift, rel=1e-12)
     assert of["returned_energy"] == pytest.approx(lower + brake, rel=1e-12)
     assert of["lost_energy"] == pytest.approx(sum(lost), rel=1e-12)
@@ -63,14 +63,14 @@ def test_power_balances_with_a_rotor_that_is_sped_up() -> None:
     course = driver_course(table(), moved, motor=motor)
     kinetic = 0.5 * 1e-4 * (course.speed[1000] ** 2 - course.speed[0] ** 2)
     half = load_history(time[:1001], 20.0, speed[:1001], WARM)
-    of = energies(half, driver_course(table(), half, motor=motor))
+    of = duty_energies(half, driver_course(table(), half, motor=motor))
     assert of["rotor_energy"] == pytest.approx(kinetic, rel=1e-5)
-    assert energies(moved, course)["rotor_energy"] == pytest.approx(0.0, abs=1e-9 * kinetic)
+    assert duty_energies(moved, course)["rotor_energy"] == pytest.approx(0.0, abs=1e-9 * kinetic)
     # The rotor takes and gives energy before the drive: through that goes what it has without a motor.
     heavy = replace(motor, inertia=1e-2)
-    whole = energies(moved, driver_course(table(), moved, motor=heavy))
+    whole = duty_energies(moved, driver_course(table(), moved, motor=heavy))
     assert whole["recovered_energy"] > 0.0
-    bare = energies(moved, driver_course(table(), moved))
+    bare = duty_energies(moved, driver_course(table(), moved))
     assert whole["drive_efficiency"] == pytest.approx(20.0 / 24.0, rel=1e-12)
     assert bare["actuator_efficiency"] == pytest.approx(whole["drive_efficiency"], rel=1e-12)
 
@@ -102,7 +102,7 @@ def test_mean_torques_and_lives_agree_by_two_roads() -> None:
         assert rated.life(cycle) == pytest.approx(sum(times) / damage, rel=1e-12)
     # Heat goes with the mean square over time, which is another number.
     slow = cycle._replace(speed=cycle.speed / 50.0, torque=cycle.torque / 2.0)
-    of = energies(slow, driver_course(table(), slow))
+    of = duty_energies(slow, driver_course(table(), slow))
     assert of["rms_output_torque"] == pytest.approx(30.594 / 2.0, abs=5e-4)
 
 

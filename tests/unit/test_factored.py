@@ -5,13 +5,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from pitchpoint.factored import Factored, as_array, log, product, root, scaled
-from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.factored import Factored, factored_product, log, product_array, scaled, square_root
+from pitchpoint.lubrication.conditions import law_arguments
 from pitchpoint.lubrication.registry import LAWS
 
 ROW = jnp.asarray([[0.5, 2.0, 3.0]])
 COLUMN = jnp.asarray([[0.1], [7.0]])
-BOTH = product(ROW, COLUMN, 4.0)
+BOTH = factored_product(ROW, COLUMN, 4.0)
 PLAIN = np.asarray(ROW) * np.asarray(COLUMN) * 4.0
 
 
@@ -24,7 +24,9 @@ def test_it_is_an_array_to_whoever_asks():
     np.testing.assert_array_equal(BOTH > 5.0, PLAIN > 5.0)
     np.testing.assert_array_equal(BOTH[0, 1] == BOTH, np.isclose(PLAIN, PLAIN[0, 1]))
     assert len(BOTH) == 2
-    np.testing.assert_allclose(product(-2.0, -ROW * 3.0) ** 0.5, (6.0 * np.asarray(ROW)) ** 0.5)
+    np.testing.assert_allclose(
+        factored_product(-2.0, -ROW * 3.0) ** 0.5, (6.0 * np.asarray(ROW)) ** 0.5
+    )
     np.testing.assert_allclose(1.0 - BOTH + PLAIN, 1.0, rtol=1e-14)
 
 
@@ -36,27 +38,29 @@ def test_products_quotients_and_powers_keep_the_factors():
         (BOTH / BOTH, np.ones_like(PLAIN)),
         ((BOTH / 1e9) ** 0.1, (PLAIN / 1e9) ** 0.1),
         (abs(scaled(BOTH, -3.0)), 3.0 * PLAIN),
-        (root(BOTH), np.sqrt(PLAIN)),
+        (square_root(BOTH), np.sqrt(PLAIN)),
     ):
         assert isinstance(found, Factored)
-        np.testing.assert_allclose(as_array(found), plain, rtol=1e-14)
+        np.testing.assert_allclose(product_array(found), plain, rtol=1e-14)
     assert {jnp.shape(one) for one in (BOTH * ROW).merged} == {(), (1, 3), (2, 1)}
 
 
 def test_logarithms_are_held_where_nothing_is():
     np.testing.assert_allclose(log(BOTH, 1e-12), np.log(PLAIN), rtol=1e-14)
-    for zero in (product(0.0 * ROW, COLUMN), 0.0 * PLAIN):
+    for zero in (factored_product(0.0 * ROW, COLUMN), 0.0 * PLAIN):
         np.testing.assert_array_equal(log(zero, 1e-12), np.full(PLAIN.shape, np.log(1e-12)))
-    slope = jax.grad(lambda x: jnp.sum(log(product(x, COLUMN), 1e-12)))(0.0 * ROW)
+    slope = jax.grad(lambda x: jnp.sum(log(factored_product(x, COLUMN), 1e-12)))(0.0 * ROW)
     np.testing.assert_array_equal(slope, 0.0)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_laws_take_products_as_they_take_arrays(law):
-    wanted, _ = arguments(law.function)
+    wanted, _ = law_arguments(law.function)
     given = {name: law.check[0][name] for name in wanted}
     if not given:
         return
-    parted = {name: product(ROW / 2.0, COLUMN, 3.0, value) for name, value in given.items()}
-    plain = {name: as_array(value) for name, value in parted.items()}
+    parted = {
+        name: factored_product(ROW / 2.0, COLUMN, 3.0, value) for name, value in given.items()
+    }
+    plain = {name: product_array(value) for name, value in parted.items()}
     np.testing.assert_allclose(law.function(**parted), law.function(**plain), rtol=1e-13)

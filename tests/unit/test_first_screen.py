@@ -22,7 +22,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import one_page, show
 from pitchpoint.views.columns import fitted
 from pitchpoint.views.figures import curves
-from pitchpoint.views.film_courses import answered, film_key_figure, place_of
+from pitchpoint.views.film_courses import contact_place, film_key_figure, films_sentence
 from pitchpoint.views.first_screen import (
     FEW_LINES,
     aligned,
@@ -31,7 +31,7 @@ from pitchpoint.views.first_screen import (
 )
 from pitchpoint.views.point import by_bodies, by_members, member_names, of_stage_by_bodies
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.section import KeyFigure, Page, SectionTable, key_figures, told_of_variants
+from pitchpoint.views.section import KeyFigure, Page, SectionTable, key_figures, variant_warnings
 from pitchpoint.views.sections import answer, beside
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows
@@ -90,7 +90,7 @@ def test_a_pair_answers_in_a_dozen_lines(pair: dict[str, Outcome]) -> None:
     assert title == "pair_23_61.toml (default)"
     assert at.startswith("gear 1 at 1500 rpm, gear 2 with 50 N m, oil 60 °C, friction iso_tr")
     by_name = {line.split("  ")[0]: line for line in figures}
-    assert f"{show.number(100 * efficiency)} %" in by_name["Efficiency"]
+    assert f"{show.number_text(100 * efficiency)} %" in by_name["Efficiency"]
     assert f"{ripple:.4g} N m peak to peak" in by_name["Input"]
     assert {"Loss", "Stress of flanks", "Stress of roots", "Backlash"} <= {*by_name}
     assert "no safety: materials.gear_1 has no limits" in by_name["Stress of flanks"]
@@ -129,9 +129,11 @@ def test_what_the_grid_makes_a_film_off_stands_beside_its_value() -> None:
     )
     errors = {"largest_central_film_error": 0.0234, "largest_minimum_film_error": 0.0751}
     lines = {**errors, "largest_minimum_film_error": np.nan}, errors
-    unknown, told = (film_key_figure("Films solved", answered(data.assign(one))) for one in lines)
+    unknown, told = (
+        film_key_figure("Films solved", films_sentence(data.assign(one))) for one in lines
+    )
     assert (unknown.value, told.value) == ("0.06813 µm", "0.06813 µm ±7.5 %")
-    both = answered(data.assign({**errors, "smallest_central_film": 9e-8}))
+    both = films_sentence(data.assign({**errors, "smallest_central_film": 9e-8}))
     assert both.startswith(
         "0.09 µm ±2.3 % at least in the middle of a contact, 0.06813 µm ±7.5 % anywhere"
     )
@@ -140,10 +142,10 @@ def test_what_the_grid_makes_a_film_off_stands_beside_its_value() -> None:
 def test_a_contact_that_is_the_only_one_has_neither_phase_nor_pair() -> None:
     film = xr.DataArray(np.ones((3, 1, 1)), dims=("phase", "pair", "line"))
     rig = xr.Dataset({"minimum_film": film}, {"phase": [0.0, 0.3, 0.7]})
-    assert place_of(rig, 0, 0, 0) == "the only contact"
+    assert contact_place(rig, 0, 0, 0) == "the only contact"
     gears = xr.concat([rig, rig], "pair")
     gears["minimum_film"] = gears["minimum_film"].transpose("phase", "pair", "line")
-    assert place_of(gears, 1, 1, 0) == "phase 0.300, pair II"
+    assert contact_place(gears, 1, 1, 0) == "phase 0.300, pair II"
 
 
 def test_members_of_a_train_are_inspected_by_their_names(pair: dict[str, Outcome]) -> None:
@@ -417,10 +419,10 @@ def test_rows_of_a_result_are_compared_without_another_run(
     row = TargetRow("efficiency", "Table 1", 1.0, 2.0, "1", 0.1, "predicted", "miss", "").as_json()
     kept = doubting(pair["default"], rows=[row], finished=True, surroundings=run.surroundings())
     (tmp_path / run.RUN).write_text("{}", "utf-8")
-    monkeypatch.setattr(run, "held", lambda *_: pytest.fail("computed anew"))
+    monkeypatch.setattr(run, "selected_variants", lambda *_: pytest.fail("computed anew"))
     for change in ({}, {"finished": False}, {"rows": []}, {"surroundings": {"code": "older"}}):
         made = {"default": doubting(kept, **change)}
-        monkeypatch.setattr(run, "open_result", lambda _, made=made: made)
+        monkeypatch.setattr(run, "open_outcomes", lambda _, made=made: made)
         if change:
             with pytest.raises(pytest.fail.Exception, match="computed anew"):
                 run.compare_case(str(tmp_path))
@@ -490,7 +492,7 @@ def test_designs_beside_each_other_name_the_bodies_of_their_own():
         )
         for name, stage in (("set", pair | {"bodies": "sun and planet"}), ("drive", pair))
     }
-    assert told_of_variants(designs, "warnings", of_stage_by_bodies) == {
+    assert variant_warnings(designs, "warnings", of_stage_by_bodies) == {
         "Stage 1: the planet bends.": ["set"],
         "Stage 1: gear 2 bends.": ["drive"],
     }

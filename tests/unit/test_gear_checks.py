@@ -8,7 +8,7 @@ import pytest
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
-from pitchpoint.gears.contact_lines import lanes_for
+from pitchpoint.gears.contact_lines import lanes_for_contact_ratio
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
@@ -509,4 +509,4 @@ def test_the_build_itself_refuses_flanks_that_cannot_meet(distance):
 @pytest.mark.parametrize("ratio", [math.nan, 24.0])
 def test_no_lanes_for_an_impossible_contact_ratio(ratio):
     with pytest.raises(InputError, match="out of reach"):
-        lanes_for(ratio)
+        lanes_for_contact_ratio(ratio)

@@ -34,10 +34,10 @@ from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.reactions import InnerBearing
-from pitchpoint.lubrication.applicability import applies
+from pitchpoint.lubrication.applicability import why_inapplicable
 from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.inputs import printed_input_rows
 
 DRIVE = tomllib.loads(WAVE)
 PAIR = {**DRIVE, "gears": {"teeth": [23, 61], "module": "2 mm", "face_width": "20 mm"}}
@@ -235,12 +235,12 @@ def test_only_chosen_laws_are_compiled_in() -> None:
 
 def test_a_law_applies_or_says_why_not() -> None:
     wave, pair = drive().built({}), Variant(PAIR, "pair.toml", "default").built({})
-    why_not = [applies(law, wave.design.mesh) for law in LAWS if law.sources]
+    why_not = [why_inapplicable(law, wave.design.mesh) for law in LAWS if law.sources]
     assert why_not == [
         "'iso_tr_14179_2' is a law for a whole mesh, and these gears have no pitch point",
         None,
     ]
-    assert not any(applies(law, pair.design.mesh) for law in LAWS)
+    assert not any(why_inapplicable(law, pair.design.mesh) for law in LAWS)
 
 
 def test_losses_stand_between_bodies() -> None:
@@ -396,7 +396,7 @@ def test_deviations_are_read_and_shown() -> None:
     one = drive(gears__deviations__flexspline=WAVES)
     built = one.built({})
     inputs = resolved(built, one.document())
-    rows = {row["key"]: row for row in input_rows({"inputs": inputs})}
+    rows = {row["key"]: row for row in printed_input_rows({"inputs": inputs})}
     told = "order 1 amplitude 5 um phase 30 deg, order 100 amplitude 3 um phase 0 deg"
     assert rows["deviations.flexspline"]["value"] == told
     assert rows["deviations.flexspline"]["status"] == "set"

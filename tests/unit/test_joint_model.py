@@ -10,7 +10,7 @@ from pitchpoint.cases.built_drive import MEETINGS
 from pitchpoint.errors import InputError
 from pitchpoint.results.by_stage import by_stage, of_stage
 from pitchpoint.runs.joint_model import joint_model, part_of_map
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 
 
 def test_torques_are_those_of_the_map_in_all_quadrants() -> None:
@@ -118,7 +118,9 @@ def test_friction_of_sets_in_a_row_ripples_over_the_period_of_each() -> None:
     """From the record of a run: orders are those of the periods of a set in a turn of the first sun."""
     settings = {"loss_map.quadrants": 4}
     parts = ("operation", "train_period", "four_quadrants")
-    drive = run(ROOT / "examples" / "two_planetary_sets.toml", analyses=parts, settings=settings)
+    drive = run_case(
+        ROOT / "examples" / "two_planetary_sets.toml", analyses=parts, settings=settings
+    )
     (outcome,) = drive.values()
     waves = joint_model(outcome).friction_waves
     assert waves is not None

@@ -34,7 +34,7 @@ from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.status import Code, Status
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.inputs import printed_input_rows
 
 TREE = tomllib.loads(PAIR)
 
@@ -111,7 +111,7 @@ def test_modifications_are_read_and_shown_with_what_follows() -> None:
     one = pair(**RELIEVED, gears__modifications__end_relief="4 um", gears__misalignment="-3 um")
     built = one.built({})
     inputs = resolved(built, one.document())
-    rows = {row["key"]: row for row in input_rows({"inputs": inputs})}
+    rows = {row["key"]: row for row in printed_input_rows({"inputs": inputs})}
     mesh = built.design.mesh
     length = (float(mesh.contact_ratio) - 1.0) * float(mesh.base_pitch)
     assert rows["modifications.tip_relief"]["value"] == "20 um / 15 um"
@@ -421,7 +421,7 @@ def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
 
     import xarray as xr
 
-    from pitchpoint.views.sections.path import along
+    from pitchpoint.views.sections.path import points_along_path
 
     load = np.array([[[1.0, 3.0, 2.0]], [[0.0, 4.0, 9.0]]])
     lanes = ("node", "pair", "slice")
@@ -437,7 +437,7 @@ def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
     fact: Any = SimpleNamespace(
         helical=False, contact_ratio=1.6, transverse_ratio=1.6, overlap_ratio=0.0
     )
-    place, pressure = along(data, "pressure", 0, fact)
+    place, pressure = points_along_path(data, "pressure", 0, fact)
     shown = np.isfinite(pressure)
     np.testing.assert_allclose(place[shown], [0.2, 0.6])
     np.testing.assert_allclose(pressure[shown], [30.0, 90.0])
@@ -446,7 +446,8 @@ def test_over_the_path_stands_what_the_highest_load_makes_of_the_face() -> None:
 def test_no_undercut_limit_is_told_of_a_ring() -> None:
     one = pair(gears__teeth=[20, -70], gears__profile_shift=[0.3, 0.1], gears__addendum=[1.0, 0.8])
     rows = {
-        row["key"]: row for row in input_rows({"inputs": resolved(one.built({}), one.document())})
+        row["key"]: row
+        for row in printed_input_rows({"inputs": resolved(one.built({}), one.document())})
     }
     assert rows["gear 1, undercut limit"]["value"] == "-0.16981"
     assert not [

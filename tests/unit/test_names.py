@@ -5,14 +5,18 @@ import names
 GENERIC_SHARE = 0.03
 """Of all assignments."""
 
-FUNCTIONS = 89
-"""Public names of functions that stand for two or more things."""
-
 
 def test_few_names_are_generic():
     assert names.generic_share(names.assigned()) <= GENERIC_SHARE
 
 
-def test_no_further_name_stands_twice():
-    assert not names.repeated_classes(), sorted(names.repeated_classes())
-    assert len(names.repeated_functions()) <= FUNCTIONS, sorted(names.repeated_functions())
+def test_no_name_of_a_class_stands_twice():
+    assert not names.repeated_classes()
+
+
+def test_no_name_of_a_function_stands_twice_without_a_reason():
+    assert names.repeated_functions() == names.EXCUSED.keys()
+
+
+def test_names_of_functions_say_what_they_give():
+    assert not names.SAYS_NOTHING & names.public_functions().keys()

@@ -12,7 +12,7 @@ import pitchpoint as pp
 from pitchpoint import cli
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.runs import optimise as optimising
-from pitchpoint.runs.check import check
+from pitchpoint.runs.check import check_case
 from pitchpoint.runs.optimum_search import ConstrainedSearch
 from pitchpoint.runs.optimum_task import OptimiserTask, optimiser_task
 
@@ -277,7 +277,7 @@ def test_a_table_of_a_case_is_the_same_task(
     table = {"vary": {SHIFT: "-0.2:0.6"}, "minimise": "mean_loss", "starts": 4, "folder": "best"}
     path = tmp_path / "pair.toml"
     PAIR.set({"optimise": table}).to_toml(path)
-    assert not check(str(path))
+    assert not check_case(str(path))
     monkeypatch.setenv("COLUMNS", "80")
     assert run_command(monkeypatch, "optimise", str(path)) == 0
     screen = capsys.readouterr().out.splitlines()
@@ -292,7 +292,7 @@ def test_a_table_of_a_case_is_the_same_task(
     wrong = PAIR.set({"optimise": {**table, "minimise": "mean_los"}})
     wrong.to_toml(path)
     with pytest.raises(InputError, match="did you mean mean_loss"):
-        check(str(path))
+        check_case(str(path))
     for change in ({"minimise": ""}, {"vary": {}}, {"maximise": "mean_loss"}):
         with pytest.raises(InputError, match=r"an optimiser needs|one result is the aim"):
             pp.optimise(PAIR.set({"optimise": {**table, **change}}))

@@ -2,8 +2,8 @@
 
 import pytest
 
-from pitchpoint.cases.document import read
-from pitchpoint.cases.library import find
+from pitchpoint.cases.document import read_tables
+from pitchpoint.cases.library import find_case
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.units import parse
@@ -68,7 +68,7 @@ def test_a_file_of_another_kind(name, tmp_path):
     path = tmp_path / "bad.toml"
     path.write_bytes(content)
     with pytest.raises(InputError) as error:
-        read(path)
+        read_tables(path)
     assert words in str(error.value) and str(error.value).startswith("bad.toml: ")
     assert "\n" not in str(error.value)
 
@@ -78,11 +78,11 @@ def test_a_file_beside_the_one_that_is_missing(name, tmp_path):
     (tmp_path / "pair.toml").touch()
     (tmp_path / "robot.toml").touch()
     with pytest.raises(InputError, match=r"; did you mean pair\.toml\?$"):
-        find(str(tmp_path / name))
+        find_case(str(tmp_path / name))
     (tmp_path / "nowhere.toml").symlink_to(tmp_path / "gone.toml")
     for missing in ("gone.toml", "nowhere.toml"):
         with pytest.raises(InputError, match=r"no such case file$"):
-            find(str(tmp_path / missing))
+            find_case(str(tmp_path / missing))
 
 
 QUANTITIES = {

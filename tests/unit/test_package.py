@@ -50,7 +50,7 @@ def test_wheel_holds_every_source_file(tmp_path: Path) -> None:
     assert "pitchpoint/py.typed" in shipped
     assert wanted <= shipped
     read = {name for name in shipped if name.startswith("pitchpoint/docs/")}
-    assert read == {f"pitchpoint/docs/{name}.md" for name in pages.names()}
+    assert read == {f"pitchpoint/docs/{name}.md" for name in pages.page_names()}
 
 
 def test_locks_name_no_address() -> None:

@@ -16,7 +16,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views.explorer import Reader
 from pitchpoint.views.picture import Picture, PictureBody, picture_of
 from pitchpoint.views.point import period_of
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +55,7 @@ def test_an_explorer_draws_every_stage_and_turns_each_at_its_speed(
 @pytest.mark.whole
 def test_a_drive_draws_the_teeth_of_every_stage() -> None:
     """Each with its own numbers: gear 2 of stage 1 has 61 teeth, that of stage 2 has 70."""
-    text = render(bank.outcomes(Path(__file__).parents[2] / "examples" / "two_stage.toml"))
+    text = report_page(bank.outcomes(Path(__file__).parents[2] / "examples" / "two_stage.toml"))
     assert [f'id="mesh{number}-close"' in text for number in range(3)] == [True, True, False]
     tables = re.findall(r"number of teeth z.*?</tr>", text, re.S)
     numbers = [re.findall(r">(\d+)<", table) for table in tables]

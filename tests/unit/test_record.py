@@ -9,14 +9,14 @@ import pytest
 from records import entries
 from sound import PAIR
 
-from pitchpoint.cases.library import as_text, find
-from pitchpoint.cases.record import MANIFEST, RUN, Record, default_folder, owner
+from pitchpoint.cases.library import as_text, find_case
+from pitchpoint.cases.record import MANIFEST, RUN, Record, default_folder, folder_record
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import dataset, save, without_nan, write_text
 from pitchpoint.runs import run as running
-from pitchpoint.runs.case import held
-from pitchpoint.runs.run import describe, manifests, open_result
-from pitchpoint.views.inputs import input_rows, set_for_run
+from pitchpoint.runs.case import selected_variants
+from pitchpoint.runs.run import manifests, open_outcomes, uncomputed_manifests
+from pitchpoint.views.inputs import printed_input_rows, set_for_run
 
 LAW = {"name": "constant", "title": "constant", "note": ""}
 ROW = {"quantity": "q", "where": "Table 1", "printed": 1.0, "computed": None, "unit": "W"}
@@ -75,14 +75,14 @@ def folder(tmp_path: Path) -> Path:
 
 def told(path: Path) -> str:
     with pytest.raises(InputError) as caught:
-        open_result(path)
+        open_outcomes(path)
     (line,) = str(caught.value).splitlines()
     assert len(line) < 400
     return line
 
 
 def test_a_result_is_opened(folder: Path) -> None:
-    (outcome,) = open_result(folder).values()
+    (outcome,) = open_outcomes(folder).values()
     assert outcome.manifest == GOOD
     assert outcome.rows[0].as_json() == ROW
     assert float(outcome.parts["teeth"]["mean_loss"]) == 1.0
@@ -217,7 +217,9 @@ def test_another_case_is_refused_unless_told(pairs: Path) -> None:
         )
     assert (out / RUN).read_bytes() == before
     run_into(out, "b/pair.toml", overwrite=True)
-    assert owner(out) == Record(case="pair.toml", file="../b/pair.toml", variants=["default"])
+    assert folder_record(out) == Record(
+        case="pair.toml", file="../b/pair.toml", variants=["default"]
+    )
 
 
 def test_case_and_results_may_move_together(pairs: Path) -> None:
@@ -238,7 +240,7 @@ def test_a_record_that_cannot_be_read_blocks_nothing(pairs: Path) -> None:
     run_into(Path("out"), "a/pair.toml")
     Path("out", RUN).write_bytes(bytes(40))
     run_into(Path("out"), "a/pair.toml")
-    assert owner(Path("out")) is not None
+    assert folder_record(Path("out")) is not None
 
 
 def test_cases_of_one_name_have_folders_of_their_own(pairs: Path) -> None:
@@ -260,7 +262,7 @@ def test_names_that_are_no_text(pairs: Path) -> None:
     case = os.fsdecode(b"\xff/\xfe.toml")
     Path(case).parent.mkdir()
     Path(case).write_text("")
-    assert find(case)[0] == "\\xfe.toml"
+    assert find_case(case)[0] == "\\xfe.toml"
     out = Path(os.fsdecode(b"out\xfd"))
     run_into(out, case)
     run_into(out, case)
@@ -288,7 +290,7 @@ def test_no_case_has_no_folder() -> None:
 
 
 def test_sources_of_a_case_or_of_its_result(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(running, "describe", lambda case: [{"described": case}])
+    monkeypatch.setattr(running, "uncomputed_manifests", lambda case: [{"described": case}])
     monkeypatch.chdir(folder.parents[1])
     Path("pair.toml").write_text("")
     assert manifests("results/pair") == [GOOD]
@@ -339,7 +341,7 @@ def odd(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     path = tmp_path_factory.mktemp("odd") / "odd.toml"
     path.write_text(ODD)
     changes = {"operation.speed": "1234.5678 rpm", "gears.profile_shift.1": 0.37}
-    (manifest,) = describe(str(path), settings=changes)
+    (manifest,) = uncomputed_manifests(str(path), settings=changes)
     return manifest
 
 
@@ -371,7 +373,7 @@ def test_numbers_are_recorded_in_si_with_their_kind(odd: dict[str, Any]) -> None
 
 
 def test_views_make_words_of_it(odd: dict[str, Any]) -> None:
-    shown = {(row["table"], row["key"]): row["value"] for row in input_rows(odd)}
+    shown = {(row["table"], row["key"]): row["value"] for row in printed_input_rows(odd)}
     assert shown["operation", "speed"] == "1234.57 rpm"
     assert shown["gears", "profile_shift"] == "0.37 / 0"
     assert shown["materials", "gear_2.young"] == "3 GPa"
@@ -384,14 +386,14 @@ def test_views_make_words_of_it(odd: dict[str, Any]) -> None:
 def test_a_number_of_another_kind_is_shown_as_what_it_is() -> None:
     (row,) = entries({"gears.module": 3.0})
     ((shown,), (lost,)) = (
-        input_rows({"inputs": [{**row, **change}]})
+        printed_input_rows({"inputs": [{**row, **change}]})
         for change in ({"kind": "torque"}, {"value": None})
     )
     assert (shown["value"], lost["value"]) == ("3 N m", "undefined")
 
 
 def test_a_case_is_made_again_from_its_record(odd: dict[str, Any], tmp_path: Path) -> None:
-    (again,) = describe(kept(odd, tmp_path))
+    (again,) = uncomputed_manifests(kept(odd, tmp_path))
     assert again == odd
 
 
@@ -409,14 +411,14 @@ def test_a_case_is_made_again_from_its_record(odd: dict[str, Any], tmp_path: Pat
     ids=str,
 )
 def test_cases_are_made_again_from_their_records(case: str | Path, tmp_path: Path) -> None:
-    for manifest in describe(str(case)):
-        (again,) = describe(kept(manifest, tmp_path))
+    for manifest in uncomputed_manifests(str(case)):
+        (again,) = uncomputed_manifests(kept(manifest, tmp_path))
         assert again == manifest
 
 
 def test_other_surroundings_are_told(odd: dict[str, Any], tmp_path: Path) -> None:
     there = {**odd["surroundings"], "jax": "0.1", "code": "0" * 16}
-    (again,) = describe(kept({**odd, "surroundings": there}, tmp_path))
+    (again,) = uncomputed_manifests(kept({**odd, "surroundings": there}, tmp_path))
     here = odd["surroundings"]
     told = (
         f"The record was made with jax 0.1, code {'0' * 16} and is computed with jax {here['jax']}, "
@@ -431,12 +433,12 @@ def test_a_law_of_the_users_own_is_asked_for_again(odd: dict[str, Any], tmp_path
     with pytest.raises(
         InputError, match="'my_law', a friction law of the user's own, which no record"
     ):
-        describe(path)
+        uncomputed_manifests(path)
     law = running._own(lambda *, pressure: pressure)
-    (variant,) = held(str(path), own=law)
+    (variant,) = selected_variants(str(path), own=law)
     assert variant.own is law
     with pytest.raises(InputError, match="this case has no variants"):
-        describe(kept(odd, tmp_path), ["physical"])
+        uncomputed_manifests(kept(odd, tmp_path), ["physical"])
 
 
 MODULE = "gears.module"
@@ -474,7 +476,7 @@ def test_a_record_that_was_changed(
     row_of(changed, path).update(change)
     (file := tmp_path / "kept.json").write_text(json.dumps(changed))
     with pytest.raises(InputError) as caught:
-        describe(str(file))
+        uncomputed_manifests(str(file))
     line, *_ = str(caught.value).splitlines()  # what is missing elsewhere for it stands behind
     assert "kept.json: " in line
     assert words in line
@@ -487,13 +489,13 @@ def test_a_driver_that_does_not_move(odd: dict[str, Any], tmp_path: Path) -> Non
         ({"motion": [1.0]}, "motion has not as many rates as there are members"),
     ):
         with pytest.raises(InputError, match=words):
-            describe(kept({**odd, **change}, tmp_path))
+            uncomputed_manifests(kept({**odd, **change}, tmp_path))
 
 
 def test_the_lubricant_factor_of_a_mineral_oil_stands_among_what_is_fitted(tmp_path: Path) -> None:
     path = tmp_path / "pair.toml"
     path.write_text(PAIR.replace("75W90-A", "mineral-vg-150"))
-    rows = input_rows(describe(str(path))[0])
+    rows = printed_input_rows(uncomputed_manifests(str(path))[0])
     (row,) = (one for one in rows if "X_L" in one["key"])
     assert row["status"] == "fitted" and row["value"].startswith("0.846")
     assert "friction by iso_tr_14179_2 alone" in row["note"] and row["where"] == "fernandes_2022"

@@ -6,11 +6,19 @@ from pathlib import Path
 import pytest
 
 import pitchpoint
-from pitchpoint.cases.library import names, path_of
+from pitchpoint.cases.library import case_names, case_path
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.registry import LAWS
 from pitchpoint.materials import lubricants, solids
-from pitchpoint.registry import Registry, alike, code_at, known_as, letters, nearest, unknown_name
+from pitchpoint.registry import (
+    Registry,
+    code_at,
+    known_as,
+    letters,
+    nearest,
+    similar_names,
+    unknown_name,
+)
 from pitchpoint.runs.catalogue import entries
 
 KNOWN = ["steel", "pom"]
@@ -49,7 +57,7 @@ def test_case_spaces_and_hyphens_do_not_hide_a_name(given, find, meant):
     [
         ("pom", solids.find, "POM-H"),
         ("pao-vg-1500", lubricants.find, "pao-vg-150 or pao-vg-100 or pao-vg-680"),
-        ("Tian 2024", path_of, "tian2024"),
+        ("Tian 2024", case_path, "tian2024"),
     ],
 )
 def test_another_name_is_offered_not_taken(given, find, meant):
@@ -69,8 +77,8 @@ def test_no_two_names_of_the_library_differ_by_signs_alone():
 
 
 def test_a_name_that_differs_in_spelling_alone_is_offered_alone():
-    assert alike("TIAN_2024", names()) == ["tian2024"]
-    assert len(alike("pao-vg-15", lubricants.catalogue())) == 3
+    assert similar_names("TIAN_2024", case_names()) == ["tian2024"]
+    assert len(similar_names("pao-vg-15", lubricants.catalogue())) == 3
 
 
 def test_an_empty_list_says_so():

@@ -21,7 +21,7 @@ from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show
 from pitchpoint.views.figures import Figure, Panel, curves, laws, line_heights
 from pitchpoint.views.outlines import visible_points
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.section import Paragraph, naming
 from pitchpoint.views.sections.cycle import _mean_friction
 from pitchpoint.views.sections.loss_map import map_panel
@@ -40,7 +40,7 @@ def published(folder: Path) -> Outcomes:
 
 @pytest.fixture(scope="module")
 def page(published: Outcomes) -> str:
-    return render(published)
+    return report_page(published)
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def unit_of_axis(figure: dict[str, Any], axis: str) -> str:
 
 def in_unit(values: list[float | None], old: str, new: str) -> list[float]:
     """Values of an axis in another unit, both as printed."""
-    spelled = {show.unit(one): one for kind in kinds() for one in units_of(kind)}
+    spelled = {show.display_unit(one): one for kind in kinds() for one in units_of(kind)}
     old, new = spelled[old], spelled[new]
     kind = kind_of(old)
     return [
@@ -155,12 +155,14 @@ def test_a_menu_changes_traces_that_exist(page: str) -> None:
 
 def test_figures_change_with_the_units_of_their_axes(published: Outcomes) -> None:
     """Each axis whose unit is chosen has the same values in that unit; no other changes."""
-    before, after = (payload(render(published, units=chosen))["figures"] for chosen in ({}, CHOSEN))
+    before, after = (
+        payload(report_page(published, units=chosen))["figures"] for chosen in ({}, CHOSEN)
+    )
     units_seen = set()
     for name, figure in before.items():
         for axis in "xy":
             old, new = (unit_of_axis(one, axis) for one in (figure, after[name]))
-            assert new not in {show.unit(unit) for unit in ONCE}, name
+            assert new not in {show.display_unit(unit) for unit in ONCE}, name
             pairs = zip(figure["data"], after[name]["data"], strict=True)
             for one, other in ((a.get(axis), b.get(axis)) for a, b in pairs):
                 if one is None or old == new:
@@ -204,7 +206,7 @@ def test_a_map_that_four_digits_do_not_tell_apart_is_a_line(published: Outcomes)
     assert panel.note == "Mean efficiency: 98 % throughout, to four digits."
     assert loss.data[0]["showscale"] and "throughout" not in loss.remarks
     assert {name for choice in panel.choices for name in choice.changes} == {"map_mean_loss"}
-    assert "throughout, to four digits." in render(alike)
+    assert "throughout, to four digits." in report_page(alike)
 
 
 def test_maps_of_variants_that_differ_but_are_even_have_one_colour(published: Outcomes) -> None:
@@ -244,7 +246,9 @@ def test_what_is_doubtful_of_a_part_counts_at_the_top(published: Outcomes) -> No
         parts={**outcome.parts, "strength": strength},
         manifest={**outcome.manifest, "warnings": [told, "tips are thin"]},
     )
-    assert "2 doubtful; first: The flank" in re.sub(r"<[^>]*>", "", render({"physical": doubtful}))
+    assert "2 doubtful; first: The flank" in re.sub(
+        r"<[^>]*>", "", report_page({"physical": doubtful})
+    )
 
 
 def test_the_scale_of_maps_is_that_of_laws_in_their_range(published: Outcomes) -> None:
@@ -261,7 +265,7 @@ def test_the_scale_of_maps_is_that_of_laws_in_their_range(published: Outcomes) -
     panel = map_panel(cut, curves(cut))
     assert panel.figures[0].data[0]["zmax"] == pytest.approx(others[-1])
     assert max(losses.values()) > 1.02 * others[-1]
-    assert "that of the laws in their range: under " in render(cut)
+    assert "that of the laws in their range: under " in report_page(cut)
 
 
 def test_maps_of_the_efficiency_begin_above_rest(page: str) -> None:
@@ -278,7 +282,7 @@ def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:
         )
         for name, one in published.items()
     }
-    page = render(cut)
+    page = report_page(cut)
     assert not any(name.startswith("study_shape") for name in payload(page)["figures"])
     parts = re.findall(r"<caption[^>]*>Few values: addendum.*?</table>", page, re.S)
     assert {one.count('<th scope="row">') for one in parts} == {2 * 3}
@@ -287,7 +291,7 @@ def test_sweeps_of_two_points_are_one_table(published: Outcomes) -> None:
     assert "The same in all rows: Study Shape" in page
     data = cut["physical"].parts["study_shape"]
     for value in data["mean_efficiency"].values[0]:
-        assert f'<td class="n">{show.number(100 * value)}</td>' in table
+        assert f'<td class="n">{show.number_text(100 * value)}</td>' in table
 
 
 def test_tables_of_studies_leave_out_what_does_not_vary(published: Outcomes) -> None:
@@ -306,7 +310,7 @@ def test_tables_of_studies_leave_out_what_does_not_vary(published: Outcomes) -> 
         cut[name] = replace(
             one, parts={**one.parts, "study_shape": two, "study_idle": lossless(two)}
         )
-    page = render(cut)
+    page = report_page(cut)
     every = re.findall(
         r"<caption[^>]*>(Few values: addendum[^<]*)</caption>(.*?)</table>", page, re.S
     )
@@ -334,7 +338,7 @@ def test_quantities_beyond_what_a_page_has_room_for_stand_in_a_table_of_their_ow
         two = one.parts["study_shape"].isel(point=[0, 2])
         two = two.assign({more: (k + 1.0) * two["mean_loss"] for k, more in enumerate(names)})
         cut[name] = replace(one, parts={**one.parts, "study_shape": two})
-    told = re.findall(r"<caption[^>]*>Few values: addendum.*?</table>", render(cut), re.S)
+    told = re.findall(r"<caption[^>]*>Few values: addendum.*?</table>", report_page(cut), re.S)
     heads = [re.findall(r'<th scope="col"( class="n")?>(.*?)</th>', table) for table in told]
     assert [each[0] for each in heads] == [("", "Friction law")] * 2
     assert [each[1][1] for each in heads] == ["addendum of both basic racks [modules]"] * 2
@@ -373,7 +377,7 @@ def test_tables_have_captions_and_scopes(page: str) -> None:
 
 @pytest.mark.parametrize("case", quick_first(["published", "idle", "wheel"]))
 def test_no_text_is_not_a_number(case: str, request: pytest.FixtureRequest) -> None:
-    page = render(request.getfixturevalue(case))
+    page = report_page(request.getfixturevalue(case))
     text = Words(page).text
     assert not re.search(r"\b(nan|none|null|inf|infinity)\b", _unnamed(text), re.I)
     payload(page)
@@ -398,7 +402,7 @@ def test_what_a_user_typed_is_text(page: str) -> None:
 
 def test_names_of_variants_cannot_end_the_script(published: Outcomes) -> None:
     evil = "</script><img src=x>"
-    page = render({evil: published["physical"], "other": published["as_published"]})
+    page = report_page({evil: published["physical"], "other": published["as_published"]})
     assert "<img" not in page.replace(_plotly(page), "")
     names = {t.get("name") for f in payload(page)["figures"].values() for t in f["data"]}
     assert any("&lt;/script&gt;" in str(name) for name in names)

@@ -38,7 +38,7 @@ from pitchpoint.views.first_screen import aligned
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
 from pitchpoint.views.registry import in_order
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.section import KeyFigure, Page, key_figures, panels
 from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import ARC, arc_panel, wave_losses, wave_sentence
@@ -81,7 +81,7 @@ def test_an_explorer_keeps_one_drawing_and_which_teeth_carry_at_each_load(whole:
 
 @pytest.fixture(scope="module")
 def page(whole: Outcome) -> str:
-    return render({"default": whole})
+    return report_page({"default": whole})
 
 
 def words(page: str) -> str:
@@ -132,7 +132,7 @@ def test_an_efficiency_of_the_teeth_alone_says_so(whole: Outcome, page: str) -> 
     assert "teeth alone" not in words(page)
     alone = operation(0.0)
     alone["mean_efficiency"].attrs["covers"] = "teeth alone"
-    told = words(render({"default": outcome({"operation": alone})}))
+    told = words(report_page({"default": outcome({"operation": alone})}))
     assert "85 % mean efficiency, teeth alone" in told
 
 
@@ -178,7 +178,7 @@ def test_page_stays_small(page: str) -> None:
 @pytest.mark.parametrize("kept", [("teeth",), ("teeth", "cycle"), ("operation",), ()])
 def test_sections_appear_with_their_parts(whole: Outcome, kept: tuple[str, ...]) -> None:
     part = replace(whole, parts={name: whole.parts[name] for name in kept})
-    bare = render({"default": part})
+    bare = report_page({"default": part})
     headings = {
         "Drive and path of the teeth": "teeth" in kept,
         "Along the wave": "cycle" in kept,
@@ -361,14 +361,14 @@ def test_designs_have_their_results_as_rows_and_their_curves_on_the_same_axes(
     data = whole.parts["torsion"]
     stiffer = data.assign(torsional_stiffness=2.0 * data["torsional_stiffness"])
     both = {"thin": whole, "thick": replace(whole, parts={**whole.parts, "torsion": stiffer})}
-    drawn = payload(render(both, designs=True))["figures"]
+    drawn = payload(report_page(both, designs=True))["figures"]
     thin, thick = drawn["torsion_of_designs_torsional_stiffness"]["data"]
     assert (thin["name"], thick["name"]) == ("thin", "thick")
     known = [(a, b) for a, b in zip(thin["y"], thick["y"], strict=True) if a is not None]
     assert len(known) > 1
     assert [b for _, b in known] == pytest.approx([2.0 * a for a, _ in known], rel=1e-4)
     assert not any(
-        name.startswith("torsion_of_designs") for name in payload(render(both))["figures"]
+        name.startswith("torsion_of_designs") for name in payload(report_page(both))["figures"]
     )
     rows = {(one.name, one.place): one.values["thin"] for one in main_results(both)}
     error = whole.parts["kinematic_error"]["kinematic_error_range"]
@@ -494,8 +494,8 @@ def test_what_flanks_bear_stands_in_the_answer_and_on_the_screen(whole: Outcome)
     at = operating_point(one).torque
     edges = show.quantity("edge_share", 0.08 * at / 40.0)
     assert row["part of the load on edges of the teeth"] == edges
-    assert f"part of the load on edges of the teeth {edges}" in words(render({"default": one}))
-    assert "part of the load on edges" not in words(render({"default": whole}))
+    assert f"part of the load on edges of the teeth {edges}" in words(report_page({"default": one}))
+    assert "part of the load on edges" not in words(report_page({"default": whole}))
 
 
 def test_teeth_that_carry_name_the_variant_whose_load_they_are(whole: Outcome) -> None:

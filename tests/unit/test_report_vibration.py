@@ -28,14 +28,14 @@ from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Figure, Panel, continued
-from pitchpoint.views.path import path_of
+from pitchpoint.views.path import contact_path
 from pitchpoint.views.registry import STIFFNESS, WEAR
-from pitchpoint.views.report import render
+from pitchpoint.views.report import report_page
 from pitchpoint.views.section import Page, SectionTable, panels
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.design_chart import design_charts
 from pitchpoint.views.sections.joint import joint_panel
-from pitchpoint.views.sections.path import along, loss_places
+from pitchpoint.views.sections.path import loss_places, points_along_path
 from pitchpoint.views.sections.plane_of_action import PlaneOfAction, plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 from pitchpoint.views.sections.stiffness import stiffness_answer, stiffness_panels
@@ -139,7 +139,7 @@ def test_a_line_crosses_the_plane_at_the_base_helix_angle(helical: CylindricalPa
 
 
 def test_page_has_every_section_and_figure(whole: Outcome) -> None:
-    page = render({"default": whole})
+    page = report_page({"default": whole})
     text = words(page)
     for part in ("Plane of action", "Mesh stiffness", "Vibration", "Against speed"):
         assert part in text
@@ -152,7 +152,7 @@ def test_page_has_every_section_and_figure(whole: Outcome) -> None:
 
 
 def test_top_tells_stiffness_and_transmission_error(whole: Outcome) -> None:
-    page = render({"default": whole})
+    page = report_page({"default": whole})
     on_paper, on_screen = page.split("<header>")
     assert BESIDE in words(on_paper)
     top, rest = words(on_screen).split("Inputs as resolved")
@@ -166,7 +166,7 @@ def test_top_tells_stiffness_and_transmission_error(whole: Outcome) -> None:
 
 
 def test_sections_appear_with_their_parts(whole: Outcome) -> None:
-    bare = render({"default": replace(whole, parts={"teeth": whole.parts["teeth"]})})
+    bare = report_page({"default": replace(whole, parts={"teeth": whole.parts["teeth"]})})
     assert "Plane of action" in bare
     for heading in ("Mesh stiffness", "Vibration", "Against speed", "Studies"):
         assert f"<h2>{heading}" not in bare
@@ -204,11 +204,13 @@ def test_without_a_steady_state_there_are_words_and_no_lines(whole: Outcome) -> 
     assert list(named(figure(panels, "_spectrum"))) == ["3.825 N m"]
     assert len(figure(panels, "_factor").data) == 2
     assert vibration_answer(one)[1] == (UNSTABLE, "at 5.355 N\u00a0m")
-    page = render({"default": one})
+    page = report_page({"default": one})
     assert UNSTABLE not in page
     assert "At 5.355 N m no dynamic values are shown: it &lt;b&gt;grows" in words(page)
     neither = replace(whole, parts={**whole.parts, "vibration": vibration((1, 1))})
-    assert "No steady state was found that the model describes." in render({"default": neither})
+    assert "No steady state was found that the model describes." in report_page(
+        {"default": neither}
+    )
 
 
 def test_orders_of_the_spectrum(whole: Outcome) -> None:
@@ -288,7 +290,7 @@ def test_helical_values_stand_at_the_middle_of_the_face(
     helical: CylindricalPair, whole: Outcome
 ) -> None:
     """A quantity that is linear along the path is met exactly, whatever slices a line has."""
-    path = path_of(whole)
+    path = contact_path(whole)
     phases = np.linspace(0.0, 0.999, 40)
     contacts = contacts_of(helical, jnp.asarray(phases))
     lanes = ("node", "pair", "slice")
@@ -313,12 +315,12 @@ def test_helical_values_stand_at_the_middle_of_the_face(
             "rolling_loss": (("law", *lanes), 0.0 * loss[None]),
         }
     )
-    x, y = along(data, "sliding_velocity", 0, path)
+    x, y = points_along_path(data, "sliding_velocity", 0, path)
     seen = np.isfinite(y)
     assert y[seen] == pytest.approx(2.0 * x[seen] - 1.0, abs=1e-6)
     assert x.min() >= -1e-6
     assert x.max() <= path.transverse_ratio + 1e-6
-    x, y = along(data, "load_share", 0, path)
+    x, y = points_along_path(data, "load_share", 0, path)
     assert path.transverse_ratio < x.max() <= path.contact_ratio + 1e-6
     assert np.nanmax(y) <= 1.0
     shares = loss_places(data, 0, path)

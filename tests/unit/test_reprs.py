@@ -8,7 +8,7 @@ import xarray as xr
 from sound import quick_first
 
 import pitchpoint as pp
-from pitchpoint.cases.library import names
+from pitchpoint.cases.library import case_names
 from pitchpoint.doubts import Doubt
 from pitchpoint.materials.lubricants import find
 from pitchpoint.notebook.figures import Plots
@@ -41,7 +41,7 @@ def test_a_result_without_figures_says_so(monkeypatch):
     assert repr(Plots({})) == "Plots of no section: no part that was computed has figures"
 
 
-@pytest.mark.parametrize("name", quick_first(names(), 2))
+@pytest.mark.parametrize("name", quick_first(case_names(), 2))
 def test_reprs_of_a_case_are_short(name):
     built = pp.load_case(name)
     models = [model for mesh in built.meshes for model in mesh.models]

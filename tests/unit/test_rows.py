@@ -27,7 +27,7 @@ def built() -> Built:
 
 
 def programs() -> list[int]:
-    every = (rows.engagements, rows.balances, summary._summaries, profiles._profile)
+    every = (rows.engagements, rows.row_balances, summary._summaries, profiles._profile)
     return [len(one.ready) for one in every]
 
 
@@ -43,7 +43,7 @@ def test_rows_hold_the_balance_of_the_whole_cycle(built: Built) -> None:
 def test_another_law_compiles_its_balance_alone(
     built: Built, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rows.balances, "ready", {})  # another test may have asked for that law
+    monkeypatch.setattr(rows.row_balances, "ready", {})  # another test may have asked for that law
 
     def figures(models: object) -> float:
         found = summary.summarise([(built.design, built.operation)], models)

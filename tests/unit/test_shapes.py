@@ -10,7 +10,7 @@ from jaxtyping import TypeCheckError
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.hertz import line_pressure
-from pitchpoint.factored import product
+from pitchpoint.factored import factored_product
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959
 
@@ -34,7 +34,7 @@ def test_shapes_are_checked_inside_a_program():
 
 def test_a_product_has_the_shape_that_it_stands_for():
     at = {"viscosity": 0.05, "pressure_viscosity": 2e-8, "radius": np.ones(2), "modulus": STEEL}
-    wrong = product(np.ones(3), np.ones((4, 1)))
+    wrong = factored_product(np.ones(3), np.ones((4, 1)))
     with pytest.raises(TypeCheckError, match="parameter 'radius'"):
         dowson_higginson_1959(line_load=1e5, entrainment=wrong, **at)
 
@@ -45,7 +45,7 @@ def test_fields_of_a_module_are_checked():
 
 
 def test_results_are_checked(monkeypatch):
-    monkeypatch.setattr(hertz, "root", lambda _: np.ones(2))
+    monkeypatch.setattr(hertz, "square_root", lambda _: np.ones(2))
     with pytest.raises(TypeCheckError, match="return value"):
         hertz.line_pressure(line_load=np.ones(3), radius=0.01, modulus=STEEL)
 

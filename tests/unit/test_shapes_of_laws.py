@@ -9,7 +9,7 @@ from pitchpoint._jax import array, jax
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.conditions import arguments, evaluate, shape_of
+from pitchpoint.lubrication.conditions import evaluate, law_arguments, shape_of
 from pitchpoint.lubrication.registry import FILM_THICKNESS, ROLLING_RESISTANCE
 
 LAWS = (*FRICTION.values(), *FILM_THICKNESS.values(), *ROLLING_RESISTANCE.values())
@@ -19,7 +19,7 @@ ELLIPSES = {"load", "transverse_radius"}
 
 def test_what_a_law_states_fits_what_it_asks_for():
     for law in LAWS:
-        asked = set(arguments(law.function)[0])
+        asked = set(law_arguments(law.function)[0])
         assert shape_of(law) != "line" or not asked & ELLIPSES, law.name
         assert shape_of(law) != "ellipse" or not asked & LINES, law.name
         assert shape_of(law) is not None or not asked & (LINES | ELLIPSES), law.name

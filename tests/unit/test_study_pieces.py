@@ -22,11 +22,11 @@ from pitchpoint.analyses.designs import CaseDesigns
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode
-from pitchpoint.results.pieces import ALONG, StudyPieces, as_whole, summary_of
+from pitchpoint.results.pieces import ALONG, StudyPieces, joined_pieces, summary_of
 from pitchpoint.runs import workers
 from pitchpoint.runs.described import StudyDescription, piece_elsewhere
 from pitchpoint.runs.layouts import layout_of
-from pitchpoint.runs.run import Progress, run
+from pitchpoint.runs.run import Progress, run_case
 
 TORQUE, WIDTH = "operation.torque", "gears.face_width"
 PAIR = pp.Case(
@@ -222,7 +222,7 @@ def test_pieces_are_read_as_one_dataset(pieces: StudyPieces) -> None:
     summary = summary_of(pieces, _codes)
     assert summary.reasons == {"no 8.5 mm": 4, "too thin": 1}
     assert summary.dtypes["locked"].kind == "b"
-    data = as_whole(pieces, summary, {ALONG: 12}, lambda part: part)
+    data = joined_pieces(pieces, summary, {ALONG: 12}, lambda part: part)
     expected = np.where(np.arange(12) < 8, np.arange(12) + 0.5, np.nan)
     expected[2] = np.nan
     np.testing.assert_array_equal(data.mean_loss.values[0], expected)
@@ -234,7 +234,7 @@ def test_pieces_are_read_as_one_dataset(pieces: StudyPieces) -> None:
 
 
 def test_designs_of_a_grid_have_a_dimension_for_each_key(pieces: StudyPieces) -> None:
-    data = as_whole(pieces, summary_of(pieces, _codes), {"a": 3, "b": 4}, lambda part: part)
+    data = joined_pieces(pieces, summary_of(pieces, _codes), {"a": 3, "b": 4}, lambda part: part)
     flat = np.arange(12.0) + 0.5
     flat[[2, *range(8, 12)]] = np.nan
     np.testing.assert_array_equal(data.mean_loss.values[0], flat.reshape(3, 4))
@@ -542,11 +542,11 @@ def test_a_table_of_the_case_is_the_study(spelling: str, tmp_path: Path) -> None
 def test_a_table_that_cannot_be_is_one_sentence(
     change: dict[str, Any], told: str, tmp_path: Path
 ) -> None:
-    from pitchpoint.runs.check import check
+    from pitchpoint.runs.check import check_case
 
     path = tmp_path / "wrong.toml"
     path.write_text(PAIR.set({"study": {**PLAN, **change}}).to_toml())
-    for asked in (pp.study, lambda case: check(str(case))):
+    for asked in (pp.study, lambda case: check_case(str(case))):
         with pytest.raises(InputError) as caught:
             asked(path)
         assert told in str(caught.value) and "wrong.toml" in str(caught.value)
@@ -617,7 +617,7 @@ def test_a_design_of_the_page_is_the_case_beside_it_with_its_inputs_set(
     }
     program, command, path = content["opening"]["command"].split()
     assert (program, command, path) == ("pitchpoint", "run", str(out / "case.toml"))
-    parts = run(path, settings=inputs, analyses=("operation",))["default"].parts["operation"]
+    parts = run_case(path, settings=inputs, analyses=("operation",))["default"].parts["operation"]
     loss, percent = (columns[name]["values"][0][3] for name in ("mean_loss", "mean_efficiency"))
     assert parts["mean_loss"].values.ravel()[0] == pytest.approx(loss, rel=1e-5)
     assert 100.0 * parts["mean_efficiency"].values.ravel()[0] == pytest.approx(percent, rel=1e-5)

@@ -8,14 +8,14 @@ from sound import PAIR
 
 from pitchpoint.analyses.comparison import _Axis, compare, demand_parts
 from pitchpoint.cases.document import Document
-from pitchpoint.cases.library import find, names
+from pitchpoint.cases.library import case_names, find_case
 from pitchpoint.cases.study_tables import Target
 from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
 from pitchpoint.published.registry import PUBLICATIONS
 from pitchpoint.results.store import dataset
-from pitchpoint.results.target_rows import TargetRow, in_words
-from pitchpoint.runs.run import describe
+from pitchpoint.results.target_rows import TargetRow, verdict_sentence
+from pitchpoint.runs.run import uncomputed_manifests
 
 TORQUE = np.array([0.0, 10.0, 20.0, 40.0])
 WIND_UP = np.array([0.0, 2e-4, 3e-4, 4e-4])
@@ -181,8 +181,8 @@ def test_a_bound_is_shown_as_one(given, bound, verdict):
 
 def test_no_shipped_case_passes_a_number_within_its_whole_size():
     """What may be off by its own size is a bound, and says which way."""
-    for name in names():
-        tree = find(name)[1]
+    for name in case_names():
+        tree = find_case(name)[1]
         given = [*tree.get("targets", [])]
         for overlay in tree.get("variants", {}).values():
             given += overlay.get("targets", [])
@@ -262,13 +262,13 @@ def test_a_variant_is_measured_by_targets_of_its_own(tmp_path):
     """And only then, unless it is the reading of the paper."""
     path = tmp_path / "two.toml"
     path.write_text(f"{PAIR}[variants.own]\n[variants.plain]\n{WINDING.format('variants.own.')}")
-    assert describe(str(path), ["plain"])
+    assert uncomputed_manifests(str(path), ["plain"])
     with pytest.raises(InputError, match=r'two\.toml: targets\.0\.part: .*no part "torsion"'):
-        describe(str(path), ["own"])
+        uncomputed_manifests(str(path), ["own"])
     path.write_text(f"{PAIR}[variants.as_published]\n[variants.plain]\n{WINDING.format('')}")
-    assert describe(str(path), ["plain"])
+    assert uncomputed_manifests(str(path), ["plain"])
     with pytest.raises(InputError, match="no part"):
-        describe(str(path))
+        uncomputed_manifests(str(path))
 
 
 WINDING = """
@@ -301,7 +301,7 @@ def test_a_number_surprises_that_is_missed_without_cause_or_met_in_spite_of_one(
     expected = [row("trend", "miss", known, True), row("trend", "pass", "a remark")]
     assert [one.surprises for one in surprising + expected] == [True, True, False, False]
     assert not row("excluded", "excluded", known).surprises
-    assert in_words(surprising[1:]) == "1 printed number: 1 met in spite of its reason"
+    assert verdict_sentence(surprising[1:]) == "1 printed number: 1 met in spite of its reason"
 
 
 def test_numbers_of_an_independent_calculation_are_counted_apart():
@@ -316,16 +316,16 @@ def test_numbers_of_an_independent_calculation_are_counted_apart():
         "5 printed numbers: 2 met, 1 missed with a reason, 1 missed without a reason, 1 left out; "
         "1 of 1 predicted met"
     )
-    assert in_words(rows) == of_the_publication
+    assert verdict_sentence(rows) == of_the_publication
     beside = [row("reference", "pass"), row("reference", "miss")]
     assert (
-        in_words(beside + rows)
+        verdict_sentence(beside + rows)
         == f"{of_the_publication}; 2 of an independent calculation: 1 met, 1 missed without a reason"
     )
     found = [row("fitted", "pass"), row("calibrated", "pass"), row("predicted", "pass")]
-    assert in_words(found) == "3 printed numbers: 3 met (2 fitted); 1 of 1 predicted met"
-    assert in_words(beside[:1]) == "1 of an independent calculation: 1 met"
-    assert in_words([]) == ""
+    assert verdict_sentence(found) == "3 printed numbers: 3 met (2 fitted); 1 of 1 predicted met"
+    assert verdict_sentence(beside[:1]) == "1 of an independent calculation: 1 met"
+    assert verdict_sentence([]) == ""
 
 
 def test_an_axis_that_begins_at_what_rounding_left_is_told_to_begin_at_zero():

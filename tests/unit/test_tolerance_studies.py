@@ -119,11 +119,11 @@ def graded() -> xr.Dataset:
 
 
 def _range_of_error(changes: dict[str, object], curve: str) -> float:
-    from pitchpoint.analyses.kinematic_error import own_error
+    from pitchpoint.analyses.kinematic_error import deviation_error
 
     with double_precision():
         built = GRADED.set(changes).held[0].built({}).meshes[0]
-        ranges = own_error(built, lambda _: None)["kinematic_error_range"]
+        ranges = deviation_error(built, lambda _: None)["kinematic_error_range"]
     return float(ranges.sel(curve=curve, cause="both"))
 
 

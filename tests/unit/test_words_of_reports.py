@@ -14,22 +14,22 @@ from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, Words, computed,
 from pitchpoint.cases.built import ALONE
 from pitchpoint.doubts import as_doubt, stored
 from pitchpoint.results.target_rows import TargetRow
-from pitchpoint.runs.run import Outcome, open_result, run
+from pitchpoint.runs.run import Outcome, open_outcomes, run_case
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws, rounded
 from pitchpoint.views.lines import gapped
-from pitchpoint.views.path import path_of
+from pitchpoint.views.path import contact_path
 from pitchpoint.views.picture import picture_of
-from pitchpoint.views.report import render, write_report
-from pitchpoint.views.section import KeyFigure, Page, told_of_variants
+from pitchpoint.views.report import report_page, write_report
+from pitchpoint.views.section import KeyFigure, Page, variant_warnings
 from pitchpoint.views.sections import compared as comparison
-from pitchpoint.views.sections.answer import ANSWER, summary
+from pitchpoint.views.sections.answer import ANSWER, operation_summary
 from pitchpoint.views.sections.back_driving import back_driving_figure, margin_figure
 from pitchpoint.views.sections.path import loss_places, loss_sentence
 from pitchpoint.views.sections.sliding import specific_sliding
 from pitchpoint.views.sections.spread import spread_sentence
 from pitchpoint.views.sections.studies import _warnings as study_warnings
-from pitchpoint.views.sections.teeth import dimensions
+from pitchpoint.views.sections.teeth import dimension_rows
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def published(folder: Path) -> Outcomes:
 
 @pytest.fixture(scope="module")
 def page(published: Outcomes) -> str:
-    return render(published)
+    return report_page(published)
 
 
 @pytest.fixture(scope="module")
@@ -83,9 +83,10 @@ def test_efficiency_and_the_spread_of_the_laws_stand_together(
     low, high = 100.0 * values.min(), 100.0 * values.max()
     text = Words(page).text
     for value in outcome.parts["operation"]["mean_efficiency"].values[:, 0]:
-        shown = f"{show.number(100.0 * value)} % mean efficiency, {ALONE}"
+        shown = f"{show.number_text(100.0 * value)} % mean efficiency, {ALONE}"
         assert (
-            f"{shown} friction laws that apply {show.number(low)} to {show.number(high)} %" in text
+            f"{shown} friction laws that apply {show.number_text(low)} to {show.number_text(high)} %"
+            in text
         )
 
 
@@ -139,10 +140,10 @@ def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
 
 def test_reopened_results_give_the_same_report(published: Outcomes, folder: Path) -> None:
     """Beside those that the run itself gives: results of the bank are opened again too."""
-    new = run(folder / "published.toml", folder=folder / "published")
-    kept = open_result(folder / "published")
+    new = run_case(folder / "published.toml", folder=folder / "published")
+    kept = open_outcomes(folder / "published")
     write_report(kept, folder / "report.html")
-    assert (folder / "report.html").read_text("utf-8") == render(new)
+    assert (folder / "report.html").read_text("utf-8") == report_page(new)
     for name, one in new.items():
         told, again = (
             [(text, as_doubt(text).brief) for text in outcome.manifest["warnings"]]
@@ -155,11 +156,11 @@ def test_reopened_results_give_the_same_report(published: Outcomes, folder: Path
 
 @pytest.mark.whole
 def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
-    page = render(idle)
+    page = report_page(idle)
     assert "undefined, no power mean efficiency" in Words(page).text
     assert "There is no loss." in page
     assert "cycle_efficiency" not in payload(page)["figures"]
-    assert "inf" not in summary(idle["default"]).rows[0].values()
+    assert "inf" not in operation_summary(idle["default"]).rows[0].values()
     assert np.isnan(idle["default"].parts["operation"]["min_efficiency"].values).all()
     cycle = idle["default"].parts["cycle"]
     for name in ("film_thickness", "lambda_ratio"):
@@ -172,13 +173,13 @@ def test_without_power_the_efficiency_is_undefined(idle: Outcomes) -> None:
 
 
 def test_a_locked_mesh_is_said(wheel: Outcomes) -> None:
-    assert "friction does not lock the mesh" in render(wheel)
+    assert "friction does not lock the mesh" in report_page(wheel)
     outcome = wheel["default"]
     back = outcome.parts["back_driving"].copy()
     back["locked"] = back["locked"] | True
     back["mean_efficiency"] = back["mean_efficiency"] * np.nan
     locked = replace(outcome, parts={**outcome.parts, "back_driving": back})
-    assert "self-locking: friction locks the mesh" in render({"default": locked})
+    assert "self-locking: friction locks the mesh" in report_page({"default": locked})
 
 
 def test_a_drive_that_locks_or_nearly_does_is_told_among_the_first_figures(wheel: Outcomes) -> None:
@@ -207,20 +208,20 @@ def test_a_law_that_locks_is_named_beside_the_others(wheel: Outcomes) -> None:
     both = xr.concat([laws, laws.assign_coords(law=["xu_2007"])], "law")
     both["locked"].values[0, 0] = True
     one = replace(outcome, parts={**outcome.parts, "laws": both})
-    assert "locked by ISO/TR 14179-2" in render({"default": one})
+    assert "locked by ISO/TR 14179-2" in report_page({"default": one})
 
 
 def test_laws_out_of_their_range_stand_apart_with_the_reason(wheel: Outcomes) -> None:
     (apart,) = json.loads(wheel["default"].parts["laws"].attrs["outside"])
     assert apart["law"] == "xu_2007"
-    text = Words(render(wheel)).text
+    text = Words(report_page(wheel)).text
     assert "Out of their range here, and not counted" in text
-    value = show.number(100 * apart["mean_efficiency"])
+    value = show.number_text(100 * apart["mean_efficiency"])
     assert f"{value} % its friction up to" in text
-    told = summary(wheel["default"]).line
+    told = operation_summary(wheel["default"]).line
     assert told.startswith("One fitted friction law of the library applies, iso_tr_14179_2")
     assert (
-        f"Out of its range is xu_2007 (it would give {show.number(100 * apart['mean_efficiency'])} %)"
+        f"Out of its range is xu_2007 (it would give {show.number_text(100 * apart['mean_efficiency'])} %)"
         in told
     )
 
@@ -229,8 +230,10 @@ def test_no_law_in_its_range_is_said(wheel: Outcomes) -> None:
     outcome = wheel["default"]
     none = outcome.parts["laws"].isel(law=[])
     one = replace(outcome, parts={**outcome.parts, "laws": none})
-    assert "none of the library is in its range" in render({"default": one})
-    assert "No fitted friction law of the library is in its range here" in summary(one).line
+    assert "none of the library is in its range" in report_page({"default": one})
+    assert (
+        "No fitted friction law of the library is in its range here" in operation_summary(one).line
+    )
 
 
 LOCKS = "self-locking from a friction coefficient of"
@@ -241,14 +244,14 @@ def test_the_coefficient_that_locks_stands_beside_the_efficiency(wheel: Outcomes
     limit = float(data["jamming_coefficient"].values[0, 0])
     assert limit > float(data["nearest_friction"].values[0, 0]) == pytest.approx(0.05)
     assert limit > 1.0
-    told = Words(render(wheel)).text
+    told = Words(report_page(wheel)).text
     assert f"{LOCKS} above 1" in told
     assert "friction does not lock the mesh (nor would it below μ = 1)" in told
-    assert summary(wheel["default"]).rows[0][LOCKS] == "above 1"
+    assert operation_summary(wheel["default"]).rows[0][LOCKS] == "above 1"
     less = data.assign(jamming_coefficient=0.3 * data["jamming_coefficient"])
     rough = replace(wheel["default"], parts={**wheel["default"].parts, "operation": less})
-    assert summary(rough).rows[0][LOCKS] == show.number(0.3 * limit)
-    assert f"{LOCKS} {show.number(0.3 * limit)}" in Words(render({"default": rough})).text
+    assert operation_summary(rough).rows[0][LOCKS] == show.number_text(0.3 * limit)
+    assert f"{LOCKS} {show.number_text(0.3 * limit)}" in Words(report_page({"default": rough})).text
 
 
 @pytest.mark.parametrize("kept", [(), ("teeth",), ("teeth", "cycle"), ("teeth", "operation")])
@@ -256,7 +259,7 @@ def test_an_interrupted_result_has_a_page(wheel: Outcomes, kept: tuple[str, ...]
     outcome = wheel["default"]
     parts = {name: outcome.parts[name] for name in kept}
     manifest = {**outcome.manifest, "finished": False, "parts": list(kept)}
-    page = render({"default": Outcome(manifest, parts)})
+    page = report_page({"default": Outcome(manifest, parts)})
     assert "its computation was interrupted" in page
     assert sorted(Words(page).plots) == sorted(payload(page)["figures"])
 
@@ -274,11 +277,11 @@ def test_letters_that_are_close_share_a_label(outside: Outcomes) -> None:
 
 
 def test_dimensions_say_what_matters(outside: Outcomes) -> None:
-    helical = {name: values for name, *values in dimensions(outside["helical, four teeth"])}
+    helical = {name: values for name, *values in dimension_rows(outside["helical, four teeth"])}
     assert helical["profile shift x"] == ["0.74", "−0.05"]
     assert "overlap ratio ε_β" in helical
     assert "tip alteration k [modules]" in helical
-    ring = {name: values for name, *values in dimensions(outside["ring"])}
+    ring = {name: values for name, *values in dimension_rows(outside["ring"])}
     assert ring["number of teeth z"] == ["20", "−60"]
     assert ring["reference diameter d [mm]"] == ["40", "120"]
     assert "overlap ratio ε_β" not in ring
@@ -298,10 +301,10 @@ def test_specific_sliding_is_that_of_the_gears(outside: Outcomes, name: str) -> 
 
 def test_loss_places_add_up_and_follow_the_driver(published: Outcomes, wheel: Outcomes) -> None:
     outcome = published["physical"]
-    shares = loss_places(outcome.parts["cycle"], 0, path_of(outcome))
+    shares = loss_places(outcome.parts["cycle"], 0, contact_path(outcome))
     assert sum(shares.values()) == pytest.approx(1.0, abs=1e-6)
     assert [start + end for start, end in shares] == ["AC", "CD", "DB", "BE"]
-    driven = path_of(wheel["default"])
+    driven = contact_path(wheel["default"])
     sentence = loss_sentence({("A", "C"): 0.25, ("C", "E"): 0.75}, driven)
     assert "75 % before the pitch point" in sentence
     assert "25 % before" in loss_sentence(
@@ -317,17 +320,25 @@ def test_lines_stop_at_jumps() -> None:
 
 def test_numbers_for_readers() -> None:
     assert rounded([1.0 / 3.0, np.nan, np.inf]) == [0.33333, None, None]
-    assert show.number(-0.00123456) == "−0.001235"
-    assert show.number(-0.000123456) == "−1.235e−4"
-    assert [show.number(value) for value in (999.96, 9999.7, 999999.6)] == ["1000", "10000", "1e6"]
-    assert [show.number(value) for value in (17.0, 101325.0, 101325.4, 0.1 + 0.2 - 0.3)] == [
+    assert show.number_text(-0.00123456) == "−0.001235"
+    assert show.number_text(-0.000123456) == "−1.235e−4"
+    assert [show.number_text(value) for value in (999.96, 9999.7, 999999.6)] == [
+        "1000",
+        "10000",
+        "1e6",
+    ]
+    assert [show.number_text(value) for value in (17.0, 101325.0, 101325.4, 0.1 + 0.2 - 0.3)] == [
         "17",
         "101325",
         "101300",
         "5.551e−17",
     ]
-    assert (show.number(1.0 + 1e-12), show.number(-0.0), show.number(0.9956, 2)) == ("1", "0", "1")
-    assert show.number(float("nan")) == "undefined"
+    assert (show.number_text(1.0 + 1e-12), show.number_text(-0.0), show.number_text(0.9956, 2)) == (
+        "1",
+        "0",
+        "1",
+    )
+    assert show.number_text(float("nan")) == "undefined"
     assert show.quantity("mean_efficiency", float("nan")) == "undefined, no power"
     assert show.quantity("torque_ripple", 6e-14) == "0 N\u00a0m"
     assert show.signed(-0.00004, 3) == "0"
@@ -370,7 +381,7 @@ def test_numbers_beside_print_are_written_out_as_far_as_anyone_reads(
 def test_what_fails_alike_in_several_variants_is_said_once() -> None:
     told = {"warm": ["Teeth melt."], "cold": ["Teeth jam."], "hot": ["Teeth melt."]}
     outcomes = {name: Outcome({"implausible": texts}, {}) for name, texts in told.items()}
-    assert told_of_variants(outcomes, "implausible") == {
+    assert variant_warnings(outcomes, "implausible") == {
         "Teeth melt.": ["warm", "hot"],
         "Teeth jam.": ["cold"],
     }
@@ -386,10 +397,10 @@ def test_what_a_result_of_another_build_lacks_is_said_with_how_to_make_it_anew(
         for part, name in (("strength", "mesh_load_factor"), ("cycle", "efficiency"))
     }
     with pytest.raises(KeyError, match=r"mesh_load_factor|efficiency"):
-        render({"physical": replace(one, parts=parts)})
+        report_page({"physical": replace(one, parts=parts)})
     surroundings = one.manifest["surroundings"] | {"code": "0123456789abcdef"}
     older = Outcome(one.manifest | {"surroundings": surroundings}, parts)
-    page = render({"physical": older})
+    page = report_page({"physical": older})
     assert "lacks: mesh load factor (mesh_load_factor). Make it anew: " in page
     assert "<code>pitchpoint run FOLDER/physical/manifest.json</code>" in page
     assert "(efficiency). Make it anew: " in page

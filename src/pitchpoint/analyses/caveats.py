@@ -36,20 +36,20 @@ __all__ = [
     "cold_warning",
     "conformal",
     "conformal_warning",
+    "demand_agreement",
     "demand_convergence",
-    "demand_films",
     "demand_motion",
     "face_warning",
     "faces_warning",
     "films_lost",
     "friction_beyond",
     "jamming_words",
+    "law_sentences",
     "proportions_counted",
     "proportions_words",
     "range_left",
     "rolling_share",
     "room_warning",
-    "told_of_law",
     "why_not_at",
     "why_outside",
 ]
@@ -120,7 +120,7 @@ def demand_convergence(residual: np.ndarray, points: Sequence[Ready], laws: Sequ
         )
 
 
-def demand_films(code: np.ndarray, points: Sequence[Ready], laws: Sequence[str]) -> None:
+def demand_agreement(code: np.ndarray, points: Sequence[Ready], laws: Sequence[str]) -> None:
     """ConvergenceError if films and forces [law, point] found no agreement: no numbers are returned."""
     lost = films_lost(code)
     if lost.any():
@@ -373,7 +373,7 @@ def _rise(built: Built, run: Mapping[str, np.ndarray]) -> np.ndarray:
     return np.where(heat > 0.0, np.asarray(flash) + heat * within, 0.0)
 
 
-def told_of_law(law: Limited, reasons: Sequence[str]) -> list[str]:
+def law_sentences(law: Limited, reasons: Sequence[str]) -> list[str]:
     """Sentences on a law."""
     return [reworded(reason, lambda text: f"{law.name}: {text}.") for reason in reasons]
 
@@ -515,7 +515,7 @@ def laws_left(at: AtWork) -> Iterator[str]:
     for law, run in at.under:
         beside = at.built.case.film is not None and law is at.laws[0]
         films = set(map(str, run["outside films"])) if beside else ()
-        yield from told_of_law(
+        yield from law_sentences(
             law, [why for why in why_outside(at.built, law, run) if why not in films]
         )
 
@@ -557,7 +557,7 @@ def _rougher(built: Built, law: FrictionLaw, run: Mapping[str, np.ndarray]) -> l
         moves=times - 1.0,
         brief=f"loss up to {times:.2g} times, film down to {thinnest:.2g} Rq",
     )
-    return told_of_law(law, [doubt]) if times > 1.0 else []
+    return law_sentences(law, [doubt]) if times > 1.0 else []
 
 
 @OF_CYCLES.add()
@@ -579,7 +579,7 @@ def film_left(at: AtWork) -> list[str]:
     The range of the law in its registry.
     """
     film = at.built.film
-    return told_of_law(film, range_left(film, at.runs[0], "film"))
+    return law_sentences(film, range_left(film, at.runs[0], "film"))
 
 
 @OF_CYCLES.add()
@@ -601,7 +601,7 @@ def asperity_warning(at: AtWork) -> list[str]:
                 brief=f"all load on asperities {_part_of(cut, run['weight'])}",
             )
         )
-    return told_of_law(law, reasons)
+    return law_sentences(law, reasons)
 
 
 @OF_CYCLES.add()

@@ -18,8 +18,7 @@ from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.built import Built
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, locked_or_lost
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, locked_or_lost, solve_summary
 
 __all__ = [
     "CYCLE",
@@ -57,7 +56,7 @@ def _cycle(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
         title="mesh cycle",
         travels=built.travels,
         warnings=[*OF_CYCLES.of(at), *implausible(at)],
-        solve=told_of(code, by_law["residual"][1]),
+        solve=solve_summary(code, by_law["residual"][1]),
         film_law=built.case.models.film_thickness,
         events=built.nominal["events"].tolist(),
     )

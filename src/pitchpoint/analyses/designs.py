@@ -9,7 +9,7 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import PieceProgress, silent
 from pitchpoint.analyses.studies import more_of
-from pitchpoint.analyses.summaries import joined, summaries
+from pitchpoint.analyses.summaries import joined_points, summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
@@ -68,7 +68,7 @@ class CaseDesigns:
             return xr.Dataset(
                 {"reason": (("law", "point"), why, {"long_name": REASON})}, {"law": laws}
             )
-        every = joined(found).reindex(
+        every = joined_points(found).reindex(
             point=np.arange(len(self.changes)), fill_value={"locked": False, "out_of_range": ""}
         )
         every["reason"] = (("law", "point"), _reasons(every, reasons), {"long_name": REASON})

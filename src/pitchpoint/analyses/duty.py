@@ -11,9 +11,9 @@ import xarray as xr
 from pitchpoint._jax import array, double_precision
 from pitchpoint.analyses.bearing_life import rated_bearings
 from pitchpoint.analyses.four_quadrants import (
-    both,
+    both_signs,
+    output_speed_ratio,
     quadrant_axes,
-    speed_ratio,
     table_of,
 )
 from pitchpoint.analyses.strength import rating_inputs
@@ -125,11 +125,11 @@ def demand_in_map(built: Ready) -> None:
         )
         raise InputError(sentence, key="duty.law")
     empty = LossTable(
-        torques=both(loads).tolist(),
-        speeds=(speeds * speed_ratio(built)).tolist(),
+        torques=both_signs(loads).tolist(),
+        speeds=(speeds * output_speed_ratio(built)).tolist(),
         temperatures=degrees_celsius(degrees).tolist(),
         loss_torques={},
-        speed_ratio=speed_ratio(built),
+        speed_ratio=output_speed_ratio(built),
     )
     if "loaded" in built.travels:
         empty = empty._replace(units=("N", "m/s", "N m"))

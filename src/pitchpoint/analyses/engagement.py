@@ -6,14 +6,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from pitchpoint.analyses.film_contacts import asked, patch_grid_of
-from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, wholes
+from pitchpoint.analyses.film_contacts import film_table, patch_grid_of
+from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, whole_contacts
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import course_grid, course_moments
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, laid_out
-from pitchpoint.lubrication.ehl.patch.plan import passed, placed
+from pitchpoint.lubrication.ehl.patch.plan import placed_contacts, surface_travel
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_maps_on
 
 __all__ = ["PairCourse", "check_course", "check_heights", "course_of"]
@@ -61,19 +61,19 @@ class PairCourse:
 
 def check_course(built: Built) -> None:
     """InputError if the films of an engagement are asked for and cannot be had."""
-    course, cells = course_of(built), course_grid(asked(built))[1]
-    if asked(built).heights is None:
+    course, cells = course_of(built), course_grid(film_table(built))[1]
+    if film_table(built).heights is None:
         return
     _check_travel(course)
-    for contact in placed(course.contacts, course.times):
+    for contact in placed_contacts(course.contacts, course.times):
         _check_maps(contact, cells)
 
 
 def check_heights(built: Built) -> None:
     """InputError for height maps that do not fit the contact that carries most."""
-    if asked(built).heights is None:
+    if film_table(built).heights is None:
         return
-    contacts = wholes(built)
+    contacts = whole_contacts(built)
     loads = np.where(contacts.states["loaded"], contacts.states["load"], 0.0)
     if loads.any():
         at = np.unravel_index(np.argmax(loads), loads.shape)
@@ -85,7 +85,9 @@ def _check_travel(course: PairCourse) -> None:
     for height_map in course.contacts[0].heights:
         if height_map.member is None:
             continue
-        distance = abs(float(passed(course.contacts, course.times)[-1, height_map.member, 0]))
+        distance = abs(
+            float(surface_travel(course.contacts, course.times)[-1, height_map.member, 0])
+        )
         step = float(np.min(np.diff(np.asarray(height_map.x))))
         if distance > MOST_STEPS * step:
             raise InputError(
@@ -116,7 +118,7 @@ def course_of(built: Built) -> PairCourse:
         InputError: nothing is loaded, contact lines that move across the face all the time, no contacts that
             one grid shows.
     """
-    contacts = wholes(built)
+    contacts = whole_contacts(built)
     if not np.any(contacts.states["loaded"]):
         raise InputError("nothing is loaded, and no film is squeezed; leave it out", key=KEY)
     places, entered = _in_order(built, contacts)
@@ -133,7 +135,7 @@ def course_of(built: Built) -> PairCourse:
     notes = [
         text for text, taken in zip((_LIGHT, _SHORT), (heavy, long), strict=True) if not taken.all()
     ]
-    some = stretch.start + _thinned(stretch, most, course_moments(asked(built)))
+    some = stretch.start + _thinned(stretch, most, course_moments(film_table(built)))
     return _taken(built, contacts, entered, places, some, notes)
 
 
@@ -216,7 +218,7 @@ def _taken(
         some: which of them are looked at.
         told: what is left out already.
     """
-    nodes, cells = course_grid(asked(built))
+    nodes, cells = course_grid(film_table(built))
     places = every[some]
     contacts = [one_contact(built, given.numbers[at], moving=True) for at in map(tuple, places)]
     layouts: list[Layout | None] = []

@@ -29,22 +29,22 @@ __all__ = [
     "TEMPERATURES",
     "VIBRATION",
     "WIND_UP",
-    "bearing_loads",
+    "bearing_loads_by_name",
     "by_law",
     "by_torque",
-    "covered",
-    "covers",
+    "coverage_sentences",
+    "efficiency_coverage",
     "error_ranges",
     "error_words",
-    "headline",
     "held_at_operation",
-    "holding",
     "json_figures",
+    "laws_hold",
     "main_figures",
     "numbers",
     "of_contact",
     "of_operation",
     "out_of_range",
+    "point_by_valid_laws",
     "standstill_figures",
     "why_not",
 ]
@@ -189,25 +189,28 @@ def of_operation(parts: Parts) -> dict[str, Any]:
     """Figures of the operating point."""
     data = parts["operation"]
     return {
-        "headline": by_law(headline(parts), main_figures(data)[:1]),
+        "headline": by_law(point_by_valid_laws(parts), main_figures(data)[:1]),
         "operation": by_law(data, json_figures(data)),
-        "efficiency_of": covers(data),
+        "efficiency_of": efficiency_coverage(data),
         "reactions": by_law(data, REACTIONS),
         "bearing_load": {
-            str(law): dict(bearing_loads(data, k)) for k, law in enumerate(data["law"].values)
+            str(law): dict(bearing_loads_by_name(data, k))
+            for k, law in enumerate(data["law"].values)
         },
         **_lives(data),
     }
 
 
-def covers(data: xr.Dataset) -> str:
+def efficiency_coverage(data: xr.Dataset) -> str:
     """What the efficiency is of, where that is less than the whole drive; empty without efficiencies."""
     return str(data["mean_efficiency"].attrs.get("covers", "")) if "mean_efficiency" in data else ""
 
 
-def covered(every: Iterable[Parts]) -> str:
+def coverage_sentences(every: Iterable[Parts]) -> str:
     """The same as sentences for some results, each once; empty where whole drives are meant."""
-    scopes = dict.fromkeys(covers(parts["operation"]) for parts in every if "operation" in parts)
+    scopes = dict.fromkeys(
+        efficiency_coverage(parts["operation"]) for parts in every if "operation" in parts
+    )
     return " ".join(f"Efficiencies are those of the {of}." for of in scopes if of)
 
 
@@ -223,25 +226,25 @@ def why_not(parts: Parts) -> dict[str, list[str]]:
     return {str(law["law"]): law["reasons"] for law in outside}
 
 
-def holding(parts: Parts) -> list[bool]:
+def laws_hold(parts: Parts) -> list[bool]:
     """For each friction law of a case whether it holds at the operating point."""
     outside = why_not(parts)
     return [str(law) not in outside for law in parts["operation"]["law"].values]
 
 
-def headline(parts: Parts) -> xr.Dataset:
+def point_by_valid_laws(parts: Parts) -> xr.Dataset:
     """The operating point by the laws of the case that hold there; by those of the library where none does.
 
     Where no law holds at all, those of the case are all there is.
     """
-    data, holds = parts["operation"], holding(parts)
+    data, holds = parts["operation"], laws_hold(parts)
     if any(holds):
         return data.isel(law=np.flatnonzero(holds))
     others = parts.get("laws")
     return data if others is None or not others.sizes["law"] else others
 
 
-def bearing_loads(data: Any, law: int) -> list[tuple[str, float]]:
+def bearing_loads_by_name(data: Any, law: int) -> list[tuple[str, float]]:
     """Bearings by name and what they bear [N]."""
     if "bearing_load" not in data:
         return []

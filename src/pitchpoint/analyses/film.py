@@ -8,8 +8,15 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
-from pitchpoint.analyses.film_contacts import LEAST, Done, alike, asked, film_model_of, states
-from pitchpoint.analyses.film_cycle import whole
+from pitchpoint.analyses.film_contacts import (
+    LEAST,
+    Done,
+    contact_states,
+    distinct_contacts,
+    film_model_of,
+    film_table,
+)
+from pitchpoint.analyses.film_cycle import cycle_films
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.errors import InputError
@@ -68,14 +75,14 @@ _WARM_PROFILES = {
 
 def pieces(built: Built) -> Iterator[Piece]:
     """Ranges of phases."""
-    every = states(built)["phase"].size
+    every = contact_states(built)["phase"].size
     for start in range(0, every, TOGETHER):
         yield {"first": start, "count": min(TOGETHER, every - start)}
 
 
 def film_part(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """Films of all contacts at some phases."""
-    cycle_states = states(built)
+    cycle_states = contact_states(built)
     taken = slice(piece["first"], piece["first"] + piece["count"])
     some = {name: cycle_states[name][taken] for name in OF_LINES}
     start, count = piece["first"], piece["count"]
@@ -129,7 +136,7 @@ def films_of_lines(
     every = np.stack([some[name][loaded] for name in names], axis=-1)
     if not every.size:
         every = np.array([[0.0, 1.0, 0.0, 0.0, 1.0][: len(names)]])
-    where, inverse = alike(every, np.max(np.abs(every), axis=0))
+    where, inverse = distinct_contacts(every, np.max(np.abs(every), axis=0))
     conditions = dict(zip(names, every[where].T, strict=True))
     films = _films(built, conditions, done, film_model_of(built))
     back = np.full(loaded.shape, -1)
@@ -148,7 +155,7 @@ def _films(
         oil=design.lubricant,
         temperature=float(built.operation.temperature),
         roughness_rq=float(design.roughness.composite_rq),
-        heights=_heights(asked(built)),
+        heights=_heights(film_table(built)),
     )
     size = tooth_size(design.mesh)
     try:
@@ -238,7 +245,7 @@ def _shown(states: Mapping[str, np.ndarray]) -> np.ndarray:
 
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those by film laws and friction by the laws of the case beside them."""
-    cycle_states = states(built)
+    cycle_states = contact_states(built)
     shown = {"shown_pair": (("shown",), _shown(cycle_states))}
 
     def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
@@ -247,4 +254,4 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         film = _films(built, contact, None, model).film
         return float(film.asperity_share[0]), float(film.friction[0])
 
-    return whole(built, cycle_states, parts, _LANES, shown, again, title="films")
+    return cycle_films(built, cycle_states, parts, _LANES, shown, again, title="films")

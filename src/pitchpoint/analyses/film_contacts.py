@@ -36,14 +36,14 @@ from pitchpoint.programs import program
 __all__ = [
     "LEAST",
     "Done",
-    "alike",
-    "asked",
     "by_pairs",
-    "film_laws",
+    "contact_states",
+    "cycle_engagement",
+    "distinct_contacts",
+    "film_laws_for_shape",
     "film_model_of",
-    "known",
+    "film_table",
     "patch_grid_of",
-    "states",
 ]
 
 Done = Callable[[int, int], None]
@@ -56,7 +56,7 @@ ALIKE = 11
 """Digits to which contacts are alike and solved once: those of both ends of a wave, say."""
 
 
-def asked(built: Built) -> FilmTable:
+def film_table(built: Built) -> FilmTable:
     """The table of the case that asks for films."""
     assert built.case.film is not None
     return built.case.film
@@ -65,7 +65,7 @@ def asked(built: Built) -> FilmTable:
 @lru_cache(maxsize=2)
 def film_model_of(built: Built) -> FilmModel:
     """How the films of a case are solved; nodes that it leaves open are those usual for its heaviest line."""
-    model, table = built.film_model, asked(built)
+    model, table = built.film_model, film_table(built)
     assert model is not None
     if built.design.mesh.shape != "line" or not (table.nodes is None or table.over_patch):
         return model
@@ -75,7 +75,7 @@ def film_model_of(built: Built) -> FilmModel:
 @lru_cache(maxsize=2)
 def patch_grid_of(built: Built) -> tuple[int, int]:
     """Nodes along the patches of a case and cells across; open ones are usual for its heaviest contact."""
-    model, table = built.film_model, asked(built)
+    model, table = built.film_model, film_table(built)
     assert model is not None
     if table.nodes is not None:
         return patch_grid(table)
@@ -84,9 +84,9 @@ def patch_grid_of(built: Built) -> tuple[int, int]:
 
 def _heaviest(built: Built, model: FilmModel) -> float:
     """Largest load parameter M over the cycle, of ellipses that of lines as narrow; none without load."""
-    loaded, modulus = states(built)["loaded"], float(built.design.modulus)
+    loaded, modulus = contact_states(built)["loaded"], float(built.design.modulus)
     names = ("line_load", "pressure", "radius", "speed_a", "speed_b")
-    load, pressure, radius, *speeds = (states(built)[name][loaded] for name in names)
+    load, pressure, radius, *speeds = (contact_states(built)[name][loaded] for name in names)
     if built.design.mesh.shape == "ellipse":
         load = 2.0 * np.pi * (pressure / modulus) ** 2 * modulus * radius
     oil = model.fluid(built.design.lubricant, float(built.operation.temperature))
@@ -94,12 +94,12 @@ def _heaviest(built: Built, model: FilmModel) -> float:
     return float(np.max(load_parameter(load, 0.5 * sum(speeds), *constants), initial=0.0))
 
 
-def film_laws(shape: Shape) -> list[FilmThickness]:
+def film_laws_for_shape(shape: Shape) -> list[FilmThickness]:
     """Film laws that hold for contacts of a shape."""
     return [law for law in FILM_THICKNESS.values() if shape_of(law) == shape]
 
 
-def alike(values: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def distinct_contacts(values: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Contacts that differ, and which of them each one is alike.
 
     Args:
@@ -112,13 +112,13 @@ def alike(values: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 @lru_cache(maxsize=2)
-def states(built: Built) -> dict[str, np.ndarray]:
+def contact_states(built: Built) -> dict[str, np.ndarray]:
     """What the contacts of a cycle carry and how they move, [phase, pair, slice].
 
     Forces are those of the first friction law; what a law says, with an axis for all laws in front, stands
     under its own forces.
     """
-    by_law = [_under(built, known(built), models) for models in built.models]
+    by_law = [_under(built, cycle_engagement(built), models) for models in built.models]
     pairs, cycle = by_law[0]
     pairs |= {name: np.stack([contacts[name] for contacts, _ in by_law]) for name in _OF_LAW}
     loaded = pairs["active"] & (pairs["line_load"] > LEAST * pairs["line_load"].max())
@@ -129,7 +129,7 @@ _OF_LAW = ("friction", "sliding_loss", "rolling_loss", "load_by_law")
 
 
 @lru_cache(maxsize=2)
-def known(built: Built) -> Engagement:
+def cycle_engagement(built: Built) -> Engagement:
     """Contacts and shares over the cycle."""
     loaded_design, nodes = (built.design, built.operation), _nodes(built)
     engagement = engaged(*loaded_design, built.models[0], nodes)
@@ -154,7 +154,7 @@ def _nodes(built: Built) -> int:
     sharing = built.models[0].sharing
     shape = jax.eval_shape(lambda mesh: cycle_nodes(mesh, sharing, 3)[0], built.design.mesh)
     segments = int(shape.size) // 3
-    return max(3, -(-int(asked(built).phases) // segments))
+    return max(3, -(-int(film_table(built).phases) // segments))
 
 
 @program
@@ -174,7 +174,9 @@ def _computed(
         "friction": state.balance.friction,
         "sliding_loss": state.sliding_loss,
         "rolling_loss": state.rolling_loss,
-        "film_by_law": jnp.stack([evaluate(law, at) for law in film_laws(contacts.shape)]),
+        "film_by_law": jnp.stack(
+            [evaluate(law, at) for law in film_laws_for_shape(contacts.shape)]
+        ),
     }
     shape = contacts.active.shape
     of_mesh = {"drag_loss": state.drag_loss, "output_power": state.output_power}

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.caveats import cold_warning, conformal_warning
-from pitchpoint.analyses.film_contacts import asked, film_laws, film_model_of
+from pitchpoint.analyses.film_contacts import film_laws_for_shape, film_model_of, film_table
 from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import SUMMIT_CONSTANTS
@@ -15,10 +15,9 @@ from pitchpoint.contact.registry import SUMMITS
 from pitchpoint.doubts import REMARKED, Doubt, doubts_of, in_percent, reworded
 from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, withheld
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary, withheld
 
-__all__ = ["whole"]
+__all__ = ["cycle_films"]
 
 States = Mapping[str, np.ndarray]
 Again = Callable[[tuple[int, ...], float], tuple[float, float]]
@@ -44,7 +43,7 @@ UNEVEN = 0.3
 _MASKED = ("pressure", "friction", "film_by_law")
 
 
-def whole(
+def cycle_films(
     built: Built,
     states: States,
     parts: Sequence[xr.Dataset],
@@ -72,7 +71,7 @@ def whole(
     }
     figures = _figures(built, states, {name: values for name, (_, values) in solved.items()})
     outcomes = codes[loaded] if loaded.any() else np.array([int(Code.UNLOADED)])
-    laws = film_laws(built.design.mesh.shape)
+    laws = film_laws_for_shape(built.design.mesh.shape)
     spread = _by_summits(built, films, again)
     steps = np.array([int(part.attrs["iterations"]) for part in parts])
     data = dataset(
@@ -97,7 +96,7 @@ def whole(
             *_about(built, states, films),
             *_of_summits(spread),
         ],
-        solve=told_of(outcomes, _residuals(parts, outcomes), steps),
+        solve=solve_summary(outcomes, _residuals(parts, outcomes), steps),
         film_titles=[law.title for law in laws],
         film_places=[law.place for law in laws],
         choices=_choices(built),
@@ -183,7 +182,9 @@ def _figures(
         **_deviations(built, states["film_by_law"], found, solved),
     }
     figures |= _efficiencies(states, figures)
-    return figures | series_figures(built, states, found) if asked(built).in_series else figures
+    return (
+        figures | series_figures(built, states, found) if film_table(built).in_series else figures
+    )
 
 
 def _extremes(found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -229,7 +230,7 @@ def _deviations(
     apart = {place: known & (film > 0.0) for place, film in solved.items()}
     deviations = [
         law_film[apart[law.place]] / solved[law.place][apart[law.place]] - 1.0
-        for law, law_film in zip(film_laws(built.design.mesh.shape), by_law, strict=True)
+        for law, law_film in zip(film_laws_for_shape(built.design.mesh.shape), by_law, strict=True)
     ]
     largest = [
         deviation[np.argmax(np.abs(deviation))] if deviation.size else np.nan
@@ -335,7 +336,7 @@ def _other_rolling(built: Built) -> str:
 
 def _assumed(built: Built, figures: Mapping[str, np.ndarray]) -> str:
     """What of the films rests on assumed asperities; empty where they carry little or were given."""
-    names = [name for name in SUMMIT_CONSTANTS if getattr(asked(built), name) is None]
+    names = [name for name in SUMMIT_CONSTANTS if getattr(film_table(built), name) is None]
     if not names or not figures["largest_asperity_share"] > COUNTS:
         return ""
     part = 100.0 * figures["mean_boundary_part"] / figures["mean_film_friction"]
@@ -350,11 +351,11 @@ def _by_summits(built: Built, found: xr.Dataset, again: Again) -> dict[str, np.n
     Nothing where they carry next to nothing, or where the constant by which the sets differ was given.
     """
     share = np.nan_to_num(found["asperity_share"].values)
-    if asked(built).eta_beta_sigma is not None or not share.max(initial=0.0) > SPREADS:
+    if film_table(built).eta_beta_sigma is not None or not share.max(initial=0.0) > SPREADS:
         return {}
     lane = tuple(int(k) for k in np.unravel_index(np.argmax(share), share.shape))
     chosen, solved = (
-        asked(built).set_of_summits.name,
+        film_table(built).set_of_summits.name,
         (share[lane], found["film_friction"].values[lane]),
     )
     shares_and_frictions = [
@@ -387,7 +388,7 @@ def _of_summits(spread: Mapping[str, np.ndarray]) -> Iterator[Doubt]:
 def _below_hertz(built: Built, states: States, figures: Mapping[str, np.ndarray]) -> str:
     """Why rough flanks have a largest pressure below that of the dry contact; empty if they have not."""
     smooth = film_model_of(built).asperities == SMOOTH
-    if smooth or asked(built).over_patch or not states["loaded"].any():
+    if smooth or film_table(built).over_patch or not states["loaded"].any():
         return ""  # pressures of patches stand beside those of their own dry contacts
     most = np.argmax(np.where(states["loaded"], states["pressure"], 0.0))
     pressure, radius = (states[name].reshape(-1)[most] for name in ("pressure", "radius"))

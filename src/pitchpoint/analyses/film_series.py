@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from pitchpoint.analyses.analysis import Unasked
-from pitchpoint.analyses.film_contacts import known
+from pitchpoint.analyses.film_contacts import cycle_engagement
 from pitchpoint.analyses.lacking import rigid
 from pitchpoint.analyses.torsion import wound_ups
 from pitchpoint.cases.built import Built
@@ -54,7 +54,7 @@ def series_figures(
     with np.errstate(divide="ignore", invalid="ignore"):
         yields = np.where(loaded, force**2 / found["film_stiffness"], 0.0)
     compliance = np.sum(yields, axis=(-2, -1)) / torque**2
-    (wound,), _ = wound_ups(built, known(built), np.array([torque]))
+    (wound,), _ = wound_ups(built, cycle_engagement(built), np.array([torque]))
     dry, weight = np.asarray(wound.stiffness), states["weight"]
     complete = np.nan if missing else 1.0
     return {

@@ -10,16 +10,16 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.engagement import KEY, course_of
-from pitchpoint.analyses.film_contacts import asked
+from pitchpoint.analyses.film_contacts import film_table
 from pitchpoint.analyses.finite_film import FIELDS
-from pitchpoint.analyses.whole_contacts import wholes
+from pitchpoint.analyses.whole_contacts import whole_contacts
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import course_grid
 from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, reworded, worst_of_kinds
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.films import ENDS, Turned
 from pitchpoint.lubrication.ehl.patch.layout import Layout
-from pitchpoint.lubrication.ehl.patch.plan import placed
+from pitchpoint.lubrication.ehl.patch.plan import placed_contacts
 from pitchpoint.lubrication.ehl.patch.transient import (
     MarchState,
     PatchMoment,
@@ -27,8 +27,7 @@ from pitchpoint.lubrication.ehl.patch.transient import (
     steady_beside,
 )
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary
 
 __all__ = ["further", "joined", "pieces", "squeeze_part"]
 
@@ -100,7 +99,7 @@ def _some(
     solved = [one for one in marched if one.solved]
     stands = solved[-1].course if solved else after
     course = course_of(built)
-    contacts = placed(course.contacts, course.times)[first : first + count]
+    contacts = placed_contacts(course.contacts, course.times)[first : first + count]
     moments = [*solved, *[None] * (count - len(solved))]
     steady = [
         steady_beside(
@@ -125,7 +124,7 @@ def _some(
         first=first,
         lost=int(len(solved) < count),
         warnings=[*notes, *ended, *_doubts([*solved, *steady])],
-        grid=json.dumps(course_grid(asked(built))),
+        grid=json.dumps(course_grid(film_table(built))),
     )
 
 
@@ -134,7 +133,7 @@ def _marched(
 ) -> list[PatchMoment]:
     """Moments of the march, up to one whose film is not found."""
     course = course_of(built)
-    nodes, cells = course_grid(asked(built))
+    nodes, cells = course_grid(film_table(built))
     count = min(TOGETHER, course.times.size - first)
     moments: list[PatchMoment] = []
 
@@ -231,7 +230,7 @@ def _kept(
     built: Built, first: int, found: Sequence[PatchMoment]
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Fields of the moment with the thinnest film of some."""
-    nodes, cells = course_grid(asked(built))
+    nodes, cells = course_grid(film_table(built))
     fields = {name: np.full((1, cells, nodes), np.nan) for name in FIELDS}
     fields |= {"kept_x": np.full((1, nodes), np.nan), "kept_y": np.full((1, cells), np.nan)}
     at = np.full(1, -1)
@@ -313,12 +312,12 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         },
         {"time": ("moment", course.times)},
         title="squeeze of films over the engagement",
-        solver=asked(built).solver,
+        solver=film_table(built).solver,
         grid=parts[0].attrs["grid"],
         tolerance=ERROR,
         travels=built.travels,
         warnings=[*_told(parts), *(f"Squeeze: {text}." for text in course.told)],
-        solve=told_of(codes, np.nan_to_num(values["film_defect"]), iterations),
+        solve=solve_summary(codes, np.nan_to_num(values["film_defect"]), iterations),
     )
     data["path"].attrs.update(built.way)
     return data
@@ -326,7 +325,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _conditions(built: Built) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """What the contact carries at every moment, how it moves, and where it is in the mesh cycle."""
-    course, states = course_of(built), wholes(built).states
+    course, states = course_of(built), whole_contacts(built).states
     named = {name: course.values(states[name]) for name in ("load", "radius", "path", "pressure")}
     speeds = [course.values(states[name]) for name in ("speed_a", "speed_b")]
     phase, pair, line = course.places.T

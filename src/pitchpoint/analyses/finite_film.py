@@ -17,9 +17,15 @@ from pitchpoint.analyses.film import (
     over_rough,
     values_of_lines,
 )
-from pitchpoint.analyses.film_contacts import alike, asked, film_model_of, patch_grid_of, states
-from pitchpoint.analyses.film_cycle import whole
-from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, wholes
+from pitchpoint.analyses.film_contacts import (
+    contact_states,
+    distinct_contacts,
+    film_model_of,
+    film_table,
+    patch_grid_of,
+)
+from pitchpoint.analyses.film_cycle import cycle_films
+from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, whole_contacts
 from pitchpoint.cases.built import Built
 from pitchpoint.doubts import WITHHELD, Doubt, in_percent
 from pitchpoint.errors import InputError
@@ -98,7 +104,7 @@ class Refused:
 
 def pieces(built: Built) -> Iterator[Piece]:
     """Ranges of phases."""
-    every = wholes(built).states["phase"].size
+    every = whole_contacts(built).states["phase"].size
     for start in range(0, every, TOGETHER):
         yield {"first": start, "count": min(TOGETHER, every - start)}
 
@@ -106,7 +112,7 @@ def pieces(built: Built) -> Iterator[Piece]:
 def film_part(built: Built, piece: Piece, progress: PieceProgress) -> xr.Dataset:
     """Films of all contacts at some phases."""
     start, count = piece["first"], piece["count"]
-    taken, contacts = slice(start, start + count), wholes(built)
+    taken, contacts = slice(start, start + count), whole_contacts(built)
     loaded, load = (contacts.states[name][taken] for name in ("loaded", "load"))
 
     def done(part: int, every: int, doing: str = "") -> None:
@@ -158,7 +164,7 @@ def _solved(
     """Films of the contacts that differ, and which of them belongs to each contact."""
     if not len(numbers):
         return [], np.zeros(0, int)
-    where, back = alike(numbers, scale)
+    where, back = distinct_contacts(numbers, scale)
     films: list[PatchFilms | Refused] = []
     for k, conditions in enumerate(numbers[where]):
         before = next((film for film in films[::-1] if isinstance(film, PatchFilms)), None)
@@ -212,7 +218,7 @@ def _values(
         for name, shape in _SHAPES.items()
         if line or name not in _ROWS
     }
-    if asked(built).refractive_index is not None:
+    if film_table(built).refractive_index is not None:
         middle = [
             _in_the_middle(film.film) if isinstance(film, PatchFilms) else np.nan for film in films
         ]
@@ -237,7 +243,7 @@ def _in_the_middle(film: PatchFilm) -> np.ndarray:
 
 def _read_over_true(built: Built, pressure: np.ndarray, rise: np.ndarray) -> np.ndarray:
     """Film that interferometry reads with the index at ambient pressure and the inlet, over the true one."""
-    index = np.asarray(asked(built).refractive_index)
+    index = np.asarray(film_table(built).refractive_index)
     oil = film_model_of(built).fluid(built.design.lubricant, float(built.operation.temperature))
     denser = oil.density_ratio(array(pressure), array(rise))
     compressed = lorentz_lorenz_1880(refractive_index=array(index), density_ratio=denser)
@@ -321,7 +327,7 @@ def _as_lines(
     """The same contacts, with the same inlets, by the solver of lines without ends; nothing of ellipses."""
     if built.design.mesh.shape != "line":
         return {}
-    slices = states(built)
+    slices = contact_states(built)
     some = {name: slices[name][taken] for name in OF_LINES}
     begins = np.broadcast_to(inlet[..., None], given.grouped(some["load"]).shape)
     flooded = np.where(np.isnan(begins), FLOODED, begins)
@@ -399,7 +405,7 @@ def _fields(
     built: Built, parts: Sequence[xr.Dataset], whole_film: Mapping[str, np.ndarray]
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
     """Fields of the two contacts of the whole cycle, and the same on a coarser grid."""
-    load = wholes(built).states["load"]
+    load = whole_contacts(built).states["load"]
     film = whole_film["minimum_film"]
     firsts = np.cumsum([0, *(part.sizes["point"] for part in parts)])
     fields: dict[str, list[np.ndarray]] = {}
@@ -428,7 +434,7 @@ def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np
         if min(nodes, cells + 1) <= FEWEST or place[0] < 0:
             continue
         if place not in films:
-            numbers = wholes(built).numbers[place]
+            numbers = whole_contacts(built).numbers[place]
             films[place] = _one(built, numbers, (nodes // 2 + 1, cells // 2))
         film = films[place]
         if isinstance(film, PatchFilms):
@@ -444,7 +450,7 @@ def _coarse(built: Built, at: np.ndarray) -> dict[str, tuple[tuple[str, ...], np
 
 def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Films of the cycle, with those of lines, and of film laws and friction laws, beside them."""
-    contacts = wholes(built)
+    contacts = whole_contacts(built)
     names = [name for name, variable in parts[0].items() if "point" not in variable.dims]
     lanes = [part.drop_vars(names) for part in parts]
     values = {
@@ -465,7 +471,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         "distance": (("distance",), END_DISTANCES),
         "kept": (("kept",), np.array(KINDS)),
     }
-    table = asked(built)
+    table = film_table(built)
     nodes, cells = patch_grid_of(built)
 
     def again(lane: tuple[int, ...], eta_beta_sigma: float) -> tuple[float, float]:
@@ -475,7 +481,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
             return np.nan, np.nan
         return float(film.film.asperity_share), float(film.film.friction_magnitude)
 
-    data = whole(
+    data = cycle_films(
         built,
         contacts.states,
         lanes,
@@ -538,7 +544,7 @@ def _interferometry(built: Built, values: Mapping[str, np.ndarray]) -> str:
         return f"{words}: give the `refractive_index` to have them as they are read."
     read, index = (
         np.nanmax(values["read_film"] / values["central_film"]) - 1.0,
-        asked(built).refractive_index,
+        film_table(built).refractive_index,
     )
     if abs(read) < 1e-9:
         return f"{words}; the oil of this case is incompressible, and is read as it is."

@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.finer_map import finer_map
-from pitchpoint.analyses.loss_map import map_axes, maps, told_of_films
+from pitchpoint.analyses.loss_map import film_interpolation_sentence, map_axes, maps
 from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import Doubt, doubts_of, in_percent
@@ -21,17 +21,17 @@ from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.efficiency.operation_tables import LossMap
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, told
+from pitchpoint.status import locked_or_lost, solve_summary
 from pitchpoint.units import degrees_celsius
 
 __all__ = [
-    "both",
+    "both_signs",
     "loss_beside",
     "loss_of_output",
     "mirrored",
+    "output_speed_ratio",
     "pieces",
     "quadrant_axes",
-    "speed_ratio",
     "table_of",
 ]
 
@@ -144,7 +144,7 @@ def _driven(built: Ready, way: str) -> Ready:
 def _driven_back(built: Ready) -> Ready:
     """The drive with its output driving, over the speeds of the map and the torques that it takes there."""
     loads, speeds, degrees = quadrant_axes(built)
-    step, back = speed_ratio(built), built.backwards
+    step, back = output_speed_ratio(built), built.backwards
     ends = {"torque": float(loads[-1] * step), "force": None}
     ends |= {"speed": float(speeds[-1] * step), "lowest_speed": float(speeds[1] * step)}
     loss_map = (back.case.loss_map or LossMap()).model_copy(
@@ -154,7 +154,7 @@ def _driven_back(built: Ready) -> Ready:
     return replace(back, case=changed)
 
 
-def speed_ratio(built: Ready) -> float:
+def output_speed_ratio(built: Ready) -> float:
     """Speed of the output over that of the driver, not negative [1, m/rad or rad/m]."""
     return float(built.backwards.operation.speed) / float(built.operation.speed)
 
@@ -170,7 +170,7 @@ def quadrants_of(built: Ready, piece: Piece, progress: PieceProgress) -> xr.Data
         progress(count * loss.size)
     losses, locked = (np.stack(of_laws) for of_laws in zip(*outcomes, strict=True))
     # Laws of friction know no rest; a map of few speeds may have none that is slow.
-    creeping = creeping_speed(built) * (1.0 if way == FORWARDS else speed_ratio(built))
+    creeping = creeping_speed(built) * (1.0 if way == FORWARDS else output_speed_ratio(built))
     slowest = min(float(quadrant_axes(driven)[1][1]), creeping)
     mean, largest = from_rest(driven, load, slowest, degrees)
     bands = {
@@ -186,7 +186,7 @@ def quadrants_of(built: Ready, piece: Piece, progress: PieceProgress) -> xr.Data
             "moving_on_torque": (_AT_REST, largest),
         },
         {"law": built.law_names},
-        warnings=told_of_films(driven),
+        warnings=film_interpolation_sentence(driven),
     )
 
 
@@ -300,19 +300,19 @@ def _between_loads(
 def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """The whole map, with how near values between its nodes are, and what there is to say about it."""
     (loads, _, degrees), (_, speeds, _) = quadrant_axes(built), quadrant_axes(_driven_back(built))
-    ratio, torques = speed_ratio(built), both(loads)
+    ratio, torques = output_speed_ratio(built), both_signs(loads)
     lost, stuck = _over_output(built, parts)
     surely, _ = _over_output(built, parts, "moving_on_torque")
     axes = {
         "law": built.law_names,
         "output_torque": torques,
-        "output_speed": both(speeds),
+        "output_speed": both_signs(speeds),
         "temperature": degrees,
     }
     errors = _errors(built, parts, _table(axes, np.where(stuck, LOCKED, lost), ratio))
     moves = (speeds > 0.0)[:, None]
     loss = mirrored(np.where(moves, lost * speeds[:, None], 0.0))
-    figures = _figures(loss, torques[:, None, None], both(speeds)[:, None], ratio)
+    figures = _figures(loss, torques[:, None, None], both_signs(speeds)[:, None], ratio)
     held, stuck = stuck[:, :, 0], mirrored(stuck & moves)
     at_rest = {HOLDING: (lost, surely)}
     if has_spread(built):
@@ -336,7 +336,7 @@ def joined_quadrants(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         title="loss map of the output",
         travels=built.travels,
         warnings=[*_told(built, stuck, unknown, parts), *_coarse(built, errors)],
-        solve=told(locked_or_lost(stuck, unknown)),
+        solve=solve_summary(locked_or_lost(stuck, unknown)),
         note=f"{BOTH_FLANKS} {BETWEEN}",
         speed_ratio=ratio,
         load=float(built.operation.load),
@@ -353,12 +353,12 @@ def _ends(each: Sequence[Values], torques: np.ndarray, ratio: float) -> Iterator
         yield from (-highest[:, ::-1], highest)
 
 
-def both(values: np.ndarray) -> np.ndarray:
+def both_signs(values: np.ndarray) -> np.ndarray:
     """Values from zero on, with the same ones negative before them.
 
     Example:
         >>> import numpy as np
-        >>> both(np.array([0.0, 1.0, 3.0])).tolist()
+        >>> both_signs(np.array([0.0, 1.0, 3.0])).tolist()
         [-3.0, -1.0, 0.0, 1.0, 3.0]
     """
     return np.concatenate([-values[:0:-1], values])
@@ -426,7 +426,7 @@ def _own(
 def _ideal(built: Ready, way: str, *, between: bool) -> np.ndarray:
     """Torque of the output without losses under each load of a way [load, 1, 1]."""
     loads = _axes(built, way, between=between)[0]
-    return (loads if way == FORWARDS else loads / speed_ratio(built))[:, None, None]
+    return (loads if way == FORWARDS else loads / output_speed_ratio(built))[:, None, None]
 
 
 def _lost(
@@ -434,7 +434,7 @@ def _lost(
 ) -> tuple[Values, Values]:
     """Torque of the output that is lost under every load, NaN at rest, and where friction locks the drive."""
     speeds = _axes(built, way, between=between)[1]
-    at_output = speeds * (speed_ratio(built) if way == FORWARDS else 1.0)
+    at_output = speeds * (output_speed_ratio(built) if way == FORWARDS else 1.0)
     moving = np.where(at_output > 0.0, at_output, np.nan)[:, None]
     loss, locked = (_own(built, way, parts, n, between=between) for n in ("mean_loss", "locked"))
     return loss / moving, locked
@@ -445,7 +445,7 @@ def _lost_at_rest(
 ) -> Values:
     """Torque of the output that is lost where the drive starts under every load [law, load, temperature]."""
     torque = _own(built, way, parts, name, between=between)
-    at_output = torque / speed_ratio(built) if way == FORWARDS else torque
+    at_output = torque / output_speed_ratio(built) if way == FORWARDS else torque
     return np.asarray(at_output - _ideal(built, way, between=between)[:, 0])
 
 
@@ -544,7 +544,7 @@ def _off_half_way(
     lost = np.concatenate([standstill[:, :, None], moving[:, :, : speeds.size - 1]], axis=2)
     torque = _ideal(built, way, between=True)
     if way == FORWARDS:
-        speeds = speeds * speed_ratio(built)
+        speeds = speeds * output_speed_ratio(built)
     else:
         torque = -(torque + lost)
     places = (

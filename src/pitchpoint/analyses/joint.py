@@ -13,20 +13,19 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, PieceProgress, silent
 from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.figures import numbers
-from pitchpoint.analyses.kinematic_error import own_error
-from pitchpoint.analyses.torsion import engaged_at, kinematic_play, mean_friction, wound_ups
+from pitchpoint.analyses.kinematic_error import deviation_error
+from pitchpoint.analyses.torsion import engaged_at, kinematic_play, onset_friction, wound_ups
 from pitchpoint.cases.built import Built
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.doubts import Doubt
-from pitchpoint.dynamics.joint import Joint, Sliding, respond
-from pitchpoint.dynamics.joint_course import fading, settled
+from pitchpoint.dynamics.joint import Joint, Sliding, joint_response
+from pitchpoint.dynamics.joint_course import fading, steady_joint_vibration
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.wind_up_curve import WindUpCurve
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary
 
 __all__ = ["joint_figures", "joint_of", "joint_part"]
 
@@ -127,7 +126,7 @@ def joint_part(built: Built, progress: PieceProgress) -> xr.Dataset:
         ],
         note=f"{'' if any(built.deviations) else f'{ALONE} '}{LEFT_OUT}.",
         strongest=waves.names[waves.strongest],
-        solve=told_of(courses["course_status"].astype(int)),
+        solve=solve_summary(courses["course_status"].astype(int)),
     )
 
 
@@ -172,14 +171,14 @@ def _sliding(built: Built, known: Any, force: np.ndarray) -> Sliding:
     design = built.design
     slip = jax.device_get(known.contacts).slip_arm
     ways: Any = jax.device_get((design.loaded, design.motion))
-    loaded_slip, nominal = (np.asarray(along(slip, direction)) for direction in ways)
+    loaded_slip, nominal = (np.asarray(contact_velocity(slip, direction)) for direction in ways)
     held = (force * np.abs(loaded_slip) * np.asarray(known.weight)).ravel()
     rate = np.abs(nominal / np.where(loaded_slip != 0.0, loaded_slip, np.inf)).ravel()
     order = np.argsort(np.where(held > 0.0, rate, np.inf))[: max(np.count_nonzero(held), 1)]
     groups = np.array_split(order, PARTS)
     sums = np.array([held[group].sum() for group in groups])
     means = np.array([_mean(rate[group], held[group]) for group in groups])
-    friction = np.nan_to_num(np.nanmin([*mean_friction(built), np.inf]), posinf=0.0)
+    friction = np.nan_to_num(np.nanmin([*onset_friction(built), np.inf]), posinf=0.0)
     return Sliding(array(friction * sums), array(means))
 
 
@@ -207,7 +206,7 @@ def _of_deviations(built: Built, progress: PieceProgress) -> list[tuple[str, flo
     """The same of deviations of both members, at orders below half the number of teeth."""
     if not any(built.deviations):
         return []
-    data = own_error(built, progress)
+    data = deviation_error(built, progress)
     spectrum = data["kinematic_error_spectrum"].sel(curve="under load").values
     turns = _turns(built)
     return [
@@ -292,7 +291,7 @@ def _against_speed(
     """Amplitudes [motor, wave, speed] by the tangent of the curve."""
 
     def of(joint: Joint) -> dict[str, Array]:
-        response = respond(joint, order[:, None], amplitude[:, None], speed[None])
+        response = joint_response(joint, order[:, None], amplitude[:, None], speed[None])
         output = jnp.abs(response.output)
         critical = 2.0 * jnp.sqrt(joint.stiffness * joint.reduced)
         return {
@@ -335,7 +334,7 @@ def _course(joint: Joint, order: Array, amplitude: Array, speed: Array) -> tuple
     """Amplitude and smallest torque, status, and the amplitude by the tangent."""
     linear = float(_linear(joint, order, amplitude, speed))
     periods = array(fading(joint, order, speed))
-    course = jax.device_get(settled(joint, order, amplitude, speed, periods))
+    course = jax.device_get(steady_joint_vibration(joint, order, amplitude, speed, periods))
     code = int(course.status.code)
     torque, smallest = (
         float(v) if Code(code).ok else np.nan for v in (course.torque, course.smallest)
@@ -345,7 +344,7 @@ def _course(joint: Joint, order: Array, amplitude: Array, speed: Array) -> tuple
 
 @program
 def _linear(joint: Joint, order: Array, amplitude: Array, speed: Array) -> Array:
-    return jnp.abs(respond(joint, order, amplitude, speed).torque)
+    return jnp.abs(joint_response(joint, order, amplitude, speed).torque)
 
 
 def _light_motor(built: Built) -> list[str]:

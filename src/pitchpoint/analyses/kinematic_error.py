@@ -25,10 +25,9 @@ from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import looping_program, program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost
-from pitchpoint.status import told as told_of
+from pitchpoint.status import locked_or_lost, solve_summary
 
-__all__ = ["error_figures", "error_of", "kinematic_error_part", "own_error"]
+__all__ = ["deviation_error", "error_figures", "error_of", "kinematic_error_part"]
 
 PHASES = 2
 """States in each tooth period of bodies that couple many teeth: four for every wave of the highest order."""
@@ -119,7 +118,7 @@ def kinematic_error_part(
         title="kinematic error",
         travels=built.travels,
         warnings=doubts if lost else [],
-        solve=told_of(locked_or_lost(False, np.isnan(under_load))),
+        solve=solve_summary(locked_or_lost(False, np.isnan(under_load))),
         **_turns(built.family.turning, members[most]),
     )
     error_course["turn_angle"].attrs.update(long_name=error_course.attrs["turn_angle"])
@@ -203,7 +202,7 @@ def _errors(period: _Period, added: Float[Array, "pair slice tooth phase"]) -> K
 _FOUND: WeakKeyDictionary[Built, xr.Dataset] = WeakKeyDictionary()
 
 
-def own_error(built: Built, progress: PieceProgress) -> xr.Dataset:
+def deviation_error(built: Built, progress: PieceProgress) -> xr.Dataset:
     """Kinematic error by the deviations of a case, computed once for all that ask.
 
     Args:
@@ -217,7 +216,7 @@ def own_error(built: Built, progress: PieceProgress) -> xr.Dataset:
 
 def error_of(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     """Dataset of the part."""
-    return own_error(built, progress)
+    return deviation_error(built, progress)
 
 
 def error_figures(parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:

@@ -34,17 +34,16 @@ from pitchpoint.loading.registry import LoadSharing
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost
-from pitchpoint.status import told as told_of
+from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = [
     "LOSS_MAP",
     "Map",
     "at_torque",
+    "film_interpolation_sentence",
     "map_axes",
     "maps",
     "pieces",
-    "told_of_films",
 ]
 
 STATES = 1 << 20
@@ -106,7 +105,7 @@ def _joined(built: Ready, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         title="loss map",
         travels=built.travels,
         warnings=warnings,
-        solve=told_of(locked_or_lost(locked, lost)),
+        solve=solve_summary(locked_or_lost(locked, lost)),
         note="efficiency is undefined (NaN) at zero torque and at zero speed; no power is transmitted",
     )
     loss_map["mean_efficiency"].attrs.update(built.covers)
@@ -129,11 +128,11 @@ def at_torque(built: Ready, piece: Piece, progress: PieceProgress) -> xr.Dataset
             "speed": ("speed", speeds),
             "temperature": ("temperature", degrees),
         },
-        warnings=told_of_films(built),
+        warnings=film_interpolation_sentence(built),
     )
 
 
-def told_of_films(built: Ready) -> list[str]:
+def film_interpolation_sentence(built: Ready) -> list[str]:
     """How near the friction of films comes that is interpolated over the map."""
     laws = [law for law in built.laws if law.films is not None]
     return [_solved_films(mesh, law)[1] for law in laws for mesh in built.meshes]

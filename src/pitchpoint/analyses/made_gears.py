@@ -66,11 +66,14 @@ def _error_range(point: Ready) -> float:
 
 
 def _ranges(point: Ready) -> Iterator[float]:
-    from pitchpoint.analyses.kinematic_error import CURVES, own_error  # few studies ask for it
+    from pitchpoint.analyses.kinematic_error import (  # few studies ask for it
+        CURVES,
+        deviation_error,
+    )
 
     for mesh in point.meshes:
         if any(mesh.deviations):
-            of_curves = own_error(mesh, silent)["kinematic_error_range"].sel(cause="both")
+            of_curves = deviation_error(mesh, silent)["kinematic_error_range"].sel(cause="both")
             yield float(of_curves.values[CURVES.index("under load")])
         else:
             yield 0.0

@@ -14,9 +14,9 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE
 from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
 from pitchpoint.cases.built import Built
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.doubts import Doubt
-from pitchpoint.dynamics.bodies import Body, Support, across, bearing_forces, motor
+from pitchpoint.dynamics.bodies import Body, Support, bearing_forces, motor, radial_bearings
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import Modes, along_action, mean_stiffness, modes
@@ -34,8 +34,7 @@ from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.lubrication.registry import FilmThickness
 from pitchpoint.programs import fast_program, program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary
 
 __all__ = [
     "against_speed_part",
@@ -138,7 +137,7 @@ def _mean(moving: MovingMesh, ratio: Array) -> tuple[Array, Array]:
     spring = along_action(stiffness, line)
     damping = modal_damping(mass[None, None], spring[None, None], ratio)[0, 0]
     contacts, _ = jax.vmap(moving.passage.at)(moving.passage.edges[:-1])
-    sliding = jax.vmap(lambda one: along(one.slip_arm, moving.design.motion))(contacts)
+    sliding = jax.vmap(lambda one: contact_velocity(one.slip_arm, moving.design.motion))(contacts)
     fastest = jnp.max(jnp.where(contacts.active, jnp.abs(sliding), 0.0))
     return damping, fastest
 
@@ -176,7 +175,7 @@ def _support(built: Built, number: int) -> Support | None:
     damping = 2.0 * built.case.dynamics.damping_ratio * np.sqrt(stiffness * mass)
     if motion.bearing_damping is not None:
         damping = motion.bearing_damping[number]
-    return replace(across(mass, stiffness, float(damping)), ways=array(_ways(built)))
+    return replace(radial_bearings(mass, stiffness, float(damping)), ways=array(_ways(built)))
 
 
 def _ways(built: Built) -> np.ndarray:
@@ -337,7 +336,7 @@ def motion_part(built: Built, *_piece: object) -> xr.Dataset:
             *_motor_words(built, float(figures["mean_input_torque"])),
         ],
         sentence=code.sentence,
-        solve=told_of(np.array(int(code)), np.asarray(figures["energy_closure"])),
+        solve=solve_summary(np.array(int(code)), np.asarray(figures["energy_closure"])),
         law=built.laws[0].title,
         contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
         film_law=built.case.models.film_thickness,
@@ -525,7 +524,7 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
             *_coarse(rising, critical, piece, data["spectrum"]),
         ],
         sentences=[code.sentence for code in Code],
-        solve=told_of(codes.astype(int)),
+        solve=solve_summary(codes.astype(int)),
         law=built.laws[0].title,
     )
 
@@ -631,7 +630,7 @@ def start_up_part(built: Built, *_piece: object) -> xr.Dataset:
             *_backwards(built, rates[:size]),
         ],
         sentence=code.sentence,
-        solve=told_of(np.array(int(code)), np.asarray(energy.closure)),
+        solve=solve_summary(np.array(int(code)), np.asarray(energy.closure)),
         law=built.laws[0].title,
     )
 

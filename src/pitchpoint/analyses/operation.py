@@ -21,12 +21,12 @@ from pitchpoint.analyses.figures import (
 )
 from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import implausible
-from pitchpoint.analyses.summaries import beside, profiles, summaries
+from pitchpoint.analyses.summaries import figures_beside_cycle, profiles, summaries
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
-from pitchpoint.results.store import dataset, describe, without_nan
+from pitchpoint.results.store import dataset, describe_variables, without_nan
 from pitchpoint.results.variables import VARIABLES
 
 __all__ = [
@@ -40,7 +40,7 @@ DIFFERS = 1.5
 
 
 def _operation(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
-    data = summaries([built], built.models, beside([built]), title="operating point")
+    data = summaries([built], built.models, figures_beside_cycle([built]), title="operating point")
     if built.rates_bearings:
         from pitchpoint.analyses import bearing_life  # few cases ask for it
 
@@ -210,7 +210,7 @@ def _back_driving(built: Ready, _: Piece, __: PieceProgress) -> xr.Dataset:
         limit.values, acting.values, out=np.full(limit.shape, np.inf), where=acting.values > 0.0
     )
     data[_MARGIN] = limit.dims, margin
-    describe(data, {_MARGIN: VARIABLES[_MARGIN]})
+    describe_variables(data, {_MARGIN: VARIABLES[_MARGIN]})
     return data
 
 

@@ -17,7 +17,7 @@ from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
 from pitchpoint.results.store import dataset
 
-__all__ = ["Sharing", "shared", "sharing_of"]
+__all__ = ["Sharing", "planet_shares", "sharing_of"]
 
 PERCENTILES = (50.0, 90.0, 99.0)
 SAMPLES = 4096
@@ -54,7 +54,7 @@ class Sharing:
 
 
 @lru_cache(maxsize=4)
-def shared(built: BuiltTrain) -> Sharing:
+def planet_shares(built: BuiltTrain) -> Sharing:
     """How the planets of a train share the load of its operating point, see `sharing_of`.
 
     Args:
@@ -152,7 +152,7 @@ def sharing_of(built: BuiltTrain, _: Piece, __: PieceProgress) -> xr.Dataset:
     equilibrium of springs that only push, see `planet_forces`: teeth at the load of the operating
     point in series with the pin, without friction, weight and centrifugal force.
     """
-    sharing, table = shared(built), built.case.train
+    sharing, table = planet_shares(built), built.case.train
     assert table is not None
     drawn = sharing.drawn
     return dataset(

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.caveats import AtWork, conformal, rolling_share
-from pitchpoint.analyses.figures import holding, why_not
+from pitchpoint.analyses.figures import laws_hold, why_not
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import Shape
@@ -135,7 +135,7 @@ def contact_strain(at: AtWork) -> str | None:
 
 
 @OF_CONTACTS.add()
-def heat(at: AtWork) -> str | None:
+def plastic_temperature(at: AtWork) -> str | None:
     """A plastic given by value, of which no limit is known, hotter than any of the catalogue bears.
 
     The highest service limit of all plastics of the catalogue. Those of the catalogue have their own, which
@@ -332,7 +332,7 @@ def friction_laws(result: ResultParts) -> str | None:
     None of the case and of the library is in its range at the operating point.
     """
     laws = result.parts.get("laws")
-    if laws is None or laws.sizes["law"] or any(holding(result.parts)):
+    if laws is None or laws.sizes["law"] or any(laws_hold(result.parts)):
         return None
     names = result.parts["operation"]["law"].values
     reasons = {str(law): why_not(result.parts)[str(law)] for law in names}

@@ -15,7 +15,7 @@ from pitchpoint.doubts import Doubt, measured
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.results.store import dataset, without_nan
-from pitchpoint.status import locked_or_lost, told
+from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = [
     "BANDS",
@@ -87,7 +87,7 @@ def running_part(built: Ready) -> xr.Dataset:
         title="running without load",
         travels=built.travels,
         warnings=_easily_started(built, data["starting_torque"][1], running[:, -1], degrees),
-        solve=told(np.concatenate([_held(values).ravel() for _, values in data.values()])),
+        solve=solve_summary(np.concatenate([_held(values).ravel() for _, values in data.values()])),
         note="NaN where friction holds the drive whatever the torque",
         fitted=" ".join(filter(None, [_fitted(built), _of_set(built, data, degrees)])),
     )

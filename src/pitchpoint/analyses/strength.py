@@ -18,9 +18,9 @@ from pitchpoint.analyses.lacking import no_pins
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.doubts import Doubt, fails, in_stage
-from pitchpoint.efficiency.summary import groups_alike, of_stacks, stacks, whole_of
+from pitchpoint.efficiency.summary import groups_alike, joined_parts, of_stacks, stacks
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.rated_pair import bare, ends_at_tips, rated_pair
+from pitchpoint.gears.rated_pair import bare_pair, ends_at_tips, rated_pair
 from pitchpoint.programs import program
 from pitchpoint.results.by_stage import Label, alike_labels
 from pitchpoint.results.store import dataset
@@ -151,13 +151,16 @@ def _with_sharing(built: Ready) -> tuple[list[tuple[Label, Built]], list[str]]:
 
 def _shared(built: BuiltTrain) -> tuple[dict[Built, Built], list[str]]:
     """Rated meshes of a set that take more by its pins, each with what it is then, and sentences on it."""
-    from pitchpoint.analyses.planet_sharing import PERCENTILES, shared  # few cases ask for it
+    from pitchpoint.analyses.planet_sharing import (  # few cases ask for it
+        PERCENTILES,
+        planet_shares,
+    )
 
     lacks = no_pins(built)
     if lacks is not None:
         out_of_place = not isinstance(lacks, Unasked)
         return {}, [f"Pins out of place are not in K_γ: {lacks}."] * out_of_place
-    sharing = shared(built)
+    sharing = planet_shares(built)
     factor = sharing.rated_factor
     by_pins = {
         mesh: _sharing_by(mesh, factor)
@@ -226,7 +229,7 @@ def _ratings(pairs: Sequence[Built]) -> list[Numbers]:
     """Ratings of pairs, together as far as their gears are of one kind."""
     rows = [_asked(pair) for pair in pairs]
     groups = groups_alike(rows)
-    all_ratings = whole_of([rated_rows([rows[k] for k in group]) for group in groups], groups)
+    all_ratings = joined_parts([rated_rows([rows[k] for k in group]) for group in groups], groups)
     return [
         {name: values[row] for name, values in all_ratings.items()} for row in range(len(pairs))
     ]
@@ -248,7 +251,7 @@ def _path_ends(mesh: Mesh) -> Float[Array, "2"]:
 
 def _bare(mesh: Mesh) -> Mesh:
     """Bare meshes, with an axis of pairs in front."""
-    meshes: Mesh = jax.vmap(bare)(mesh)
+    meshes: Mesh = jax.vmap(bare_pair)(mesh)
     return meshes
 
 

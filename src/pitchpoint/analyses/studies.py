@@ -12,7 +12,12 @@ from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several
 from pitchpoint.analyses.figures import by_law, json_figures
 from pitchpoint.analyses.made_gears import made_figures
 from pitchpoint.analyses.strength import ratings_of
-from pitchpoint.analyses.summaries import alone, beside, joined, summaries
+from pitchpoint.analyses.summaries import (
+    figures_beside_cycle,
+    joined_points,
+    single_meshes,
+    summaries,
+)
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import leaves
@@ -34,10 +39,10 @@ __all__ = [
     "PREFIX",
     "STUDIES",
     "SWEPT",
-    "demand_films",
     "demand_one",
     "is_study",
     "more_of",
+    "refuse_film_sweep",
     "sweep_values",
 ]
 
@@ -92,7 +97,7 @@ class _Planned:
             title=self.title,
             compute=self.compute,
             pieces=lambda _: self.pieces,
-            joined=lambda _, parts: joined(parts),
+            joined=lambda _, parts: joined_points(parts),
         )
 
     @property
@@ -148,13 +153,18 @@ def more_of(points: Sequence[Ready], laws: int, keys: Collection[str]) -> dict[s
         keys: of the case that the points change.
     """
     made = made_figures(points, laws, keys)
-    return {**beside(points), **ratings_of(points, laws), **made, **readings_of(points, laws)}
+    return {
+        **figures_beside_cycle(points),
+        **ratings_of(points, laws),
+        **made,
+        **readings_of(points, laws),
+    }
 
 
 def readings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
     """Variables [law, point] or [point, place] that belong to the source of a case; none for most."""
     source = points[0].case.source
-    meshes = alone(points)
+    meshes = single_meshes(points)
     if source not in PUBLICATIONS or not meshes:
         return {}
     read, courses = PUBLICATIONS[source].read, PUBLICATIONS[source].courses
@@ -199,7 +209,7 @@ def _planned(subject: Subject, name: str, study: Study, where: str) -> _Planned:
     where = where if where.startswith("--") else f"{where}.sweep"
     values, kind = sweep_values(study.sweep, where, variant.name, variant.document().tree)
     demand_one(variant, study.sweep, where)
-    demand_films(subject.built, variant, key, where)
+    refuse_film_sweep(subject.built, variant, key, where)
     attributes = {
         "sweep_key": key,
         "axis_kind": kind.kind if kind else "",
@@ -261,7 +271,7 @@ def demand_one(variant: Variant, sweep: Sweep, where: str) -> None:
         )
 
 
-def demand_films(built: Ready, variant: Variant, key: str, where: str) -> None:
+def refuse_film_sweep(built: Ready, variant: Variant, key: str, where: str) -> None:
     """InputError if choices of films are swept of a case whose figures come from formulas."""
     if key.startswith("film.") and all(law.films is None for law in built.laws):
         raise InputError(

@@ -9,8 +9,8 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import PieceProgress, silent
 from pitchpoint.analyses.caveats import (
+    demand_agreement,
     demand_convergence,
-    demand_films,
     demand_motion,
     faces_warning,
     films_lost,
@@ -22,27 +22,26 @@ from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
-from pitchpoint.efficiency.summary import groups_alike, summarise, whole_of
+from pitchpoint.efficiency.summary import groups_alike, joined_parts, summarise
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import touching
 from pitchpoint.lubrication.registry import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, withheld
-from pitchpoint.status import told as told_of
+from pitchpoint.status import locked_or_lost, solve_summary, withheld
 
 __all__ = [
     "AT_CONTACT",
-    "alone",
     "at_contact",
     "balance_codes",
-    "beside",
-    "few",
-    "joined",
+    "figures_beside_cycle",
+    "first_warnings",
+    "joined_points",
     "profiles",
+    "single_meshes",
     "summaries",
-    "temperatures",
+    "tooth_temperatures",
     "vibrations",
 ]
 
@@ -78,7 +77,7 @@ def _dims(name: str, values: np.ndarray) -> tuple[str, ...]:
     return ("law", "point", axis)[: values.ndim]
 
 
-def alone(points: Sequence[Ready]) -> list[Built]:
+def single_meshes(points: Sequence[Ready]) -> list[Built]:
     """Points of one mesh; none where they are drives of stages."""
     return [mesh for point in points if not point.numbers for mesh in point.meshes]
 
@@ -110,7 +109,7 @@ def summaries(
     if points[0].transmits and "lowest_lambda_ratio" in extremes:
         out["min_lambda_ratio"] = extremes["lowest_lambda_ratio"]
     if not may_lock and len(points) == 1:
-        demand_films(turns["turns_code"], points, names)
+        demand_agreement(turns["turns_code"], points, names)
         ends = (out["nearest_friction"], out["nearest_jamming_coefficient"])
         demand_motion(out["locked"], *ends, points, names)
     for name, values in out.items():
@@ -135,14 +134,14 @@ def summaries(
     else:
         out.pop("loss_factor", None)  # of the shares of one load: no figure of the gears alone
     sentences = dict.fromkeys(text for point in points for text in point.warnings)
-    warnings = few([*sentences]) if len(points) > 1 else [*sentences]
+    warnings = first_warnings([*sentences]) if len(points) > 1 else [*sentences]
     if "vibration_status" in extra:
         from pitchpoint.analyses.vibration import status_sentences
 
         warnings += status_sentences(extra["vibration_status"][1][0])
     if carrying is not None and slices is not None:
         carried = np.where(out["locked"], np.nan, carrying)
-        warnings += faces_warning(alone(points), carried, slices[0])
+        warnings += faces_warning(single_meshes(points), carried, slices[0])
     for models, code in zip(under, turns["turns_code"], strict=True):
         warnings += _lost_warning(models.law, code)
     if reasons is not None and len(points) > 1:
@@ -199,7 +198,7 @@ def _why_not(
                     ),
                 ]
             )
-            for at, point in enumerate(alone(points))
+            for at, point in enumerate(single_meshes(points))
         ]
         for k, law in enumerate(laws)
     ]
@@ -239,13 +238,15 @@ def _turns(runs: Sequence[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
 
 def _warming(points: Sequence[Ready]) -> dict[str, Any]:
     """What became of the balances of heat, modulus and friction; nothing where no teeth warm up."""
-    warmings = [point.warming for point in alone(points)]
+    warmings = [point.warming for point in single_meshes(points)]
     balances = [
         (warming.code, warming.residual, warming.iterations)
         for warming in warmings
         if warming is not None
     ]
-    return {"warming": told_of(*map(np.array, zip(*balances, strict=True)))} if balances else {}
+    return (
+        {"warming": solve_summary(*map(np.array, zip(*balances, strict=True)))} if balances else {}
+    )
 
 
 def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -253,7 +254,7 @@ def _balances(values: Mapping[str, Any]) -> dict[str, Any]:
     arrays = (np.asarray(values[name]) for name in ("locked", "residual", "iterations"))
     locked, residual, iterations = arrays
     lost = np.isnan(residual)
-    return told_of(locked_or_lost(locked.astype(bool), lost), residual, iterations)
+    return solve_summary(locked_or_lost(locked.astype(bool), lost), residual, iterations)
 
 
 def balance_codes(data: xr.Dataset) -> np.ndarray:
@@ -271,20 +272,20 @@ def _labels(built: Ready) -> dict[str, Any]:
     return {**places, **stages}
 
 
-def joined(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
+def joined_points(pieces: Sequence[xr.Dataset]) -> xr.Dataset:
     """Pieces of a sweep as one; their warnings too."""
     if len(pieces) == 1:
         return pieces[0]
     data = xr.concat(pieces, "point", combine_attrs="override")
     sentences = dict.fromkeys(text for piece in pieces for text in doubts_of(piece.attrs))
-    data.attrs.update(stored(few([*sentences])))
+    data.attrs.update(stored(first_warnings([*sentences])))
     data.attrs["solve"] = json.dumps(
         _balances({str(name): values for name, values in data.items()})
     )
     return data
 
 
-def few(sentences: list[str]) -> list[str]:
+def first_warnings(sentences: list[str]) -> list[str]:
     """The first warnings of a sweep, and how many more there are."""
     left_out = len(sentences) - _SHOWN
     notice = (
@@ -316,7 +317,7 @@ def _grouped(
 ) -> dict[str, np.ndarray]:
     """Summaries in order, points of equal static structure computed together."""
     if models.law.films is not None:
-        return _by_films(alone(points), models.law.name, progress)
+        return _by_films(single_meshes(points), models.law.name, progress)
 
     def of(group: Sequence[int]) -> dict[str, np.ndarray]:
         kind: Any = points[group[0]]
@@ -325,7 +326,7 @@ def _grouped(
         return figures
 
     groups = groups_alike([_design(point) for point in points])
-    return whole_of([*map(of, groups)], groups)
+    return joined_parts([*map(of, groups)], groups)
 
 
 def _design(point: Ready) -> Any:
@@ -355,15 +356,15 @@ def profiles(
     ]
 
 
-def beside(points: Sequence[Ready]) -> dict[str, Any]:
+def figures_beside_cycle(points: Sequence[Ready]) -> dict[str, Any]:
     """Figures of points beside those of their cycle: vibration, temperatures, the contact of a rig."""
-    meshes = alone(points)
+    meshes = single_meshes(points)
     if not meshes:
         return {}
     under = meshes[0].models
     return {
         **vibrations(meshes, len(under)),
-        **temperatures(meshes, len(under)),
+        **tooth_temperatures(meshes, len(under)),
         **at_contact(meshes, under),
     }
 
@@ -382,7 +383,7 @@ def at_contact(points: Sequence[Built], under: Sequence[Models]) -> dict[str, An
     }
 
 
-def temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
+def tooth_temperatures(points: Sequence[Built], laws: int) -> dict[str, Any]:
     """Temperatures and moduli of the teeth where a model says that they warm up."""
     if points[0].case.models.tooth_temperature == "isothermal":
         return {}
@@ -405,5 +406,5 @@ def vibrations(points: Sequence[Built], laws: int) -> dict[str, Any]:
     from pitchpoint.analyses.vibration import figures_of
 
     groups = groups_alike([_design(point) for point in points])
-    figures = whole_of([figures_of([points[k] for k in group]) for group in groups], groups)
+    figures = joined_parts([figures_of([points[k] for k in group]) for group in groups], groups)
     return {name: (("law", "point"), np.stack([values] * laws)) for name, values in figures.items()}

@@ -15,24 +15,24 @@ from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.contacts import Contacts, contact_velocity
 from pitchpoint.doubts import Doubt, in_percent, in_stage
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.on_balls import Body, OnBalls, opened
+from pitchpoint.gears.on_balls import Body, OnBalls, separation_on_balls
 from pitchpoint.gears.pairs import in_pairs
-from pitchpoint.loading.equilibrium import touch
+from pitchpoint.loading.equilibrium import touching_approach
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, told
+from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = [
     "engaged_at",
     "kinematic_play",
-    "mean_friction",
+    "onset_friction",
     "stiffness_at_load",
     "torsion_figures",
     "torsion_of",
@@ -126,7 +126,7 @@ def _of_drive(built: Ready, torques: np.ndarray) -> xr.Dataset:
         note=f"{'; '.join(yields)} yield; {'; '.join(rigid)} are not in it{assumed}",
         brief=f"{'; '.join(rigid)} are not in it{proportions_counted(built.meshes)}",
         left_out=_left_out(built, any(torsion["parts"] for torsion in torsions)),
-        solve=told(locked_or_lost(False, np.isnan(turned))),
+        solve=solve_summary(locked_or_lost(False, np.isnan(turned))),
     )
     data["torsional_stiffness"].attrs.update(_covered("; ".join(yields), assumed))
     return data
@@ -245,7 +245,7 @@ def _covered(yields: str, assumed: str) -> dict[str, str]:
 
 
 def _of_mesh(built: Built, torques: np.ndarray) -> xr.Dataset:
-    friction, rated = mean_friction(built), built.case.operation.load
+    friction, rated = onset_friction(built), built.case.operation.load
     limits = getattr(built.case.gears, "slopes", None)
     told_of = built.design.mesh.body.couples and rated > 0.0 and _reduces(built)
     catalogue_torques = torques_of_catalogues(rated, limits) if told_of else torques[:0]
@@ -395,7 +395,7 @@ def _loopless(built: Built, friction: np.ndarray) -> list[str]:
     ]
 
 
-def mean_friction(built: Built) -> np.ndarray:
+def onset_friction(built: Built) -> np.ndarray:
     """Coefficient at the operating point by each law, as for sliding that begins anew."""
     point = [(built.design, built.operation)]
     runs = [summarise(point, models) for models in built.models]
@@ -415,7 +415,7 @@ def _torsion(built: Built, torques: np.ndarray, friction: np.ndarray) -> dict[st
     turned = wind_ups.wind_up @ weight
     return {
         "phase": phase[::SHOWN],
-        "solve": told(locked_or_lost(False, lost), wind_ups.residual, wind_ups.iterations),
+        "solve": solve_summary(locked_or_lost(False, lost), wind_ups.residual, wind_ups.iterations),
         "kinematic_play": np.asarray(
             kinematic_play(design.mesh, design.loaded, engaged.contacts, engaged.phase, body)
         )
@@ -579,7 +579,14 @@ def kinematic_play(
     other_flanks = mesh.other_flanks
     both = contacts, contacts if other_flanks is mesh else other_flanks.contacts(phase)
     return sum(
-        (touch(opened(at.gap, body), jnp.abs(along(at.normal, loaded)), at.active) for at in both),
+        (
+            touching_approach(
+                separation_on_balls(at.gap, body),
+                jnp.abs(contact_velocity(at.normal, loaded)),
+                at.active,
+            )
+            for at in both
+        ),
         jnp.zeros(()),
     )
 

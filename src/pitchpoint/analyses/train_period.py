@@ -17,8 +17,7 @@ from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, train_cycle
 from pitchpoint.gears.nominal_motion import nominal_period
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train import Train
@@ -70,7 +69,7 @@ def train_period_of(built: BuiltTrain, _: Piece, __: PieceProgress) -> xr.Datase
             "body": [*thrusts],
         },
         title="period of the train",
-        solve=told_of(codes, residuals),
+        solve=solve_summary(codes, residuals),
         driver_period=driver_period,
     )
 

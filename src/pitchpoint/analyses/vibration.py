@@ -31,15 +31,14 @@ from pitchpoint.efficiency.summary import of_stacks, stacks
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
-from pitchpoint.gears.rated_pair import bare
+from pitchpoint.gears.rated_pair import bare_pair
 from pitchpoint.loading.iso_6336_stiffness import estimate
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.registry import TOOTH_COMPLIANCE
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import DIRECT, Code, Status, summary
-from pitchpoint.status import told as told_of
+from pitchpoint.status import DIRECT, Code, Status, solve_summary, status_summary
 
 __all__ = [
     "figures_of",
@@ -72,7 +71,7 @@ def vibrating_of(built: Built) -> Vibrating:
     assert dynamics is not None
     if dynamics.inertia is None:
         densities = [float(solid.density) for solid in built.design.solids]
-        inertia = _inertia(bare(mesh), array(densities))
+        inertia = _inertia(bare_pair(mesh), array(densities))
     else:
         inertia = array(dynamics.inertia)
     errors = dynamics.profile_error
@@ -89,7 +88,7 @@ def vibrating_of(built: Built) -> Vibrating:
 _inertia = program(plain_inertia)
 
 
-def separating(built: Built) -> bool:
+def teeth_may_part(built: Built) -> bool:
     """True if the case lets teeth part."""
     return not CONTACT_LAWS[built.case.models.tooth_contact].linear
 
@@ -115,7 +114,7 @@ def stiffness_part(built: Built, *_piece: object) -> xr.Dataset:
         {},
         title="mesh stiffness",
         warnings=[*remarks, *lost],
-        solve=DIRECT if status is None else summary(status),
+        solve=DIRECT if status is None else status_summary(status),
         model=TOOTH_COMPLIANCE[built.case.models.tooth_compliance].title,
     )
 
@@ -163,7 +162,7 @@ def vibration_part(built: Built, *_piece: object) -> xr.Dataset:
         travels=built.travels,
         warnings=[*_warnings(built, statuses), *_moduli(built)],
         status=[status.sentence for status in statuses],
-        solve=told_of(figures["vibration_status"].astype(int)),
+        solve=solve_summary(figures["vibration_status"].astype(int)),
         contact=CONTACT_LAWS[built.case.models.tooth_contact].title,
     )
 
@@ -197,7 +196,7 @@ def resonance_part(built: Built, *_piece: object) -> xr.Dataset:
     grid = _grid(parts, vibrating.orders, "dynamics.speeds.start")
     periods = built.design.period / jnp.asarray(speeds)
     runs = [
-        [jax.device_get(_sweep(*part, order, grid, separating(built))) for part in parts]
+        [jax.device_get(_sweep(*part, order, grid, teeth_may_part(built))) for part in parts]
         for order in (periods, periods[::-1])
     ]
     dims = ("direction", "torque", "speed")
@@ -209,7 +208,7 @@ def resonance_part(built: Built, *_piece: object) -> xr.Dataset:
         travels=built.travels,
         warnings=[*status_sentences(data["vibration_status"][1], _AT_SPEED), *_moduli(built)],
         sentences=[code.sentence for code in Code],
-        solve=told_of(data["vibration_status"][1].astype(int)),
+        solve=solve_summary(data["vibration_status"][1].astype(int)),
     )
 
 
@@ -269,7 +268,7 @@ def _solved(inputs: Sequence[Input], built: Built, reading: Reading) -> dict[str
         for design, point, vibrating in inputs
     ]
     grid = _grid(parts, inputs[0][2].orders)
-    parting = separating(built)
+    parting = teeth_may_part(built)
     return of_stacks(
         (_read(part, grid, parting, reading), used) for part, used in stacks(parts, TOGETHER)
     )

@@ -12,7 +12,7 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.wear import limit_of, told_of_wear, wear_model
+from pitchpoint.cases.wear import limit_of, wear_constant_doubts, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.worn import BRIDGED, WIDEST
@@ -24,19 +24,25 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.kinds import HARDNESS
-from pitchpoint.lubrication.ehl.registry import fewer
+from pitchpoint.lubrication.ehl.registry import coarser_count
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary
 from pitchpoint.wear.gradients import march_sensitivities
-from pitchpoint.wear.history import ROOM, Cells, Start, WearModel, as_new, one_turn, travelled
-from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, after
-from pitchpoint.wear.march import as_new as unworn
+from pitchpoint.wear.history import (
+    ROOM,
+    Cells,
+    Start,
+    WearModel,
+    travelled,
+    unworn_start,
+    wear_of_turn,
+)
+from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, unworn_flanks, wear_step
 from pitchpoint.wear.stages import run_in_end, severe_start
 from pitchpoint.wear.teeth import TipThickness, backlash_growth, half_teeth, tips_of
 from pitchpoint.wear.wear_tables import WEAR_LAND, WearTable
 
-__all__ = ["asked", "further", "joined", "wear_part"]
+__all__ = ["further", "joined", "wear_part", "wear_table"]
 
 TOLD = 0.03
 """Error of the largest depth, over it, from which on a sentence tells it."""
@@ -54,7 +60,7 @@ HOLDS = 0.2
 """Depth over the module up to which flanks wear along normals that stay where they are."""
 
 
-def asked(built: Built) -> WearTable:
+def wear_table(built: Built) -> WearTable:
     """The table of the case that asks for wear."""
     assert built.case.wear is not None
     return built.case.wear
@@ -71,12 +77,14 @@ class _Course(NamedTuple):
 
 @lru_cache(maxsize=2)
 def _course(built: Built) -> _Course:
-    table, design = asked(built), built.design
+    table, design = wear_table(built), built.design
     roughness = float(design.roughness.ra_1), float(design.roughness.ra_2)
     model = wear_model(built.case, built.solids, roughness, built.film_model)
     parts, every = int(table.phases), int(table.cells)
     try:
-        start, cells = as_new(design, built.operation, built.models[0], parts=parts, count=every)
+        start, cells = unworn_start(
+            design, built.operation, built.models[0], parts=parts, count=every
+        )
     except InputError as error:
         raise InputError(error.message, key="wear") from None
     tips = tips_of(design.mesh, cells, start) if has(design.mesh, tooth_sections) else None
@@ -89,11 +97,11 @@ def _rate(built: Built, depth: np.ndarray, *, coarser: bool = False) -> Rate:
     On a coarser grid each two cells are as deep as both on average.
     """
     start, cells, model, _ = _course(built)
-    seen = depth if asked(built).profile == "updated" else np.zeros_like(depth)
+    seen = depth if wear_table(built).profile == "updated" else np.zeros_like(depth)
     if coarser:
         cells, seen = cells.coarser, cells.merged(seen)
     inputs = built.design, built.operation, built.models[0], model, cells, start
-    return Rate.of(one_turn(*inputs, array(seen)))
+    return Rate.of(wear_of_turn(*inputs, array(seen)))
 
 
 def wear_part(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
@@ -101,12 +109,12 @@ def wear_part(built: Built, _: Piece, progress: PieceProgress) -> xr.Dataset:
     progress(0, "flanks as new")
     _check_tips(built)
     cells = _course(built).cells
-    return _piece(unworn(lambda depth: _rate(built, depth), cells.shape), None)
+    return _piece(unworn_flanks(lambda depth: _rate(built, depth), cells.shape), None)
 
 
 def _check_tips(built: Built) -> None:
     """InputError for tips that are as narrow as new as they may become."""
-    least, tips = asked(built).tip_land_limit, _course(built).tips
+    least, tips = wear_table(built).tip_land_limit, _course(built).tips
     if least is None or tips is None or np.all(tips.width > least):
         return
     narrow = int(np.argmin(tips.width))
@@ -126,7 +134,7 @@ def _bodies(built: Built) -> list[str]:
 
 def _limit(built: Built) -> Limit:
     """Where the march of a case ends."""
-    table, tips = asked(built), _course(built).tips
+    table, tips = wear_table(built), _course(built).tips
     teeth: list[tuple[End, Callable[[np.ndarray], float]]] = []
     if (least := table.tip_land_limit) is not None and tips is not None:
         teeth.append(("tip land", lambda depth: least - float(tips.left(depth).min())))
@@ -139,7 +147,7 @@ def _limit(built: Built) -> Limit:
 
 def _hardness(built: Built) -> float:
     """That of the softer flank [Pa]; infinite where neither is known."""
-    hardnesses = asked(built).hardness or tuple(
+    hardnesses = wear_table(built).hardness or tuple(
         float(solid.hardness) for solid in built.design.solids
     )
     return float(np.nanmin([*hardnesses, np.inf]))
@@ -170,12 +178,12 @@ def further(built: Built, last: xr.Dataset, progress: PieceProgress) -> xr.Datas
         )
         return _rate(built, depth)
 
-    reached = after(
+    reached = wear_step(
         before,
         rate,
         limit,
         start=float(last.attrs["first_pressure"]),
-        tolerance=asked(built).tolerance,
+        tolerance=wear_table(built).tolerance,
         coarser=lambda depth: _rate(built, depth, coarser=True),
     )
     return _piece(reached, float(last.attrs["first_pressure"]))
@@ -277,18 +285,18 @@ def joined(built: Built, parts: Sequence[xr.Dataset]) -> xr.Dataset:
         },
         {},
         title="wear",
-        law=asked(built).law,
+        law=wear_table(built).law,
         gears=gears_digest(built.case.gears),
-        profile=asked(built).profile,
-        load_ratio=asked(built).load_ratio,
-        severe_by=asked(built).severe_by,
+        profile=wear_table(built).profile,
+        load_ratio=wear_table(built).load_ratio,
+        severe_by=wear_table(built).severe_by,
         end=end,
         members=_bodies(built),
         driver=built.driver,
-        tolerance=asked(built).tolerance,
+        tolerance=wear_table(built).tolerance,
         sensitivities=sensitivities,
         warnings=[*_warnings(built, values, deepest, end), *_of_play(built, teeth)],
-        solve=told_of(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
+        solve=solve_summary(codes, values["wear_error"].max(axis=1), np.arange(codes.size)),
     )
 
 
@@ -304,18 +312,18 @@ def _of_grid(built: Built) -> float:
     That of the member where it is more, as new, with a factor of safety; none where depths are held at
     places, whose errors are told step by step. Source: Roache (1994), for convergence of the first order.
     """
-    course, table = _course(built), asked(built)
+    course, table = _course(built), wear_table(built)
     if course.cells.places:
         return 0.0
     design, operation, models = built.design, built.operation, built.models[0]
     parts, every = max(int(table.phases) // 2, 1), max(int(table.cells) // 2, 1)
     grids = (
         (course.start, course.cells),
-        as_new(design, operation, models, parts=parts, count=every),
+        unworn_start(design, operation, models, parts=parts, count=every),
     )
     fine, coarse = (
         np.asarray(
-            one_turn(
+            wear_of_turn(
                 design, operation, models, course.model, cells, start, array(np.zeros(cells.shape))
             ).depth
         ).max(axis=(1, 2))
@@ -336,13 +344,13 @@ def _of_films(built: Built, depth: np.ndarray) -> float:
     course, design, operation = _course(built), built.design, built.operation
     if course.model.films is None:
         return 0.0
-    half = fewer(course.model.films.nodes)
+    half = coarser_count(course.model.films.nodes)
     nodes, part = (half, OF_HALF_NODES) if half else (2 * course.model.films.nodes - 1, 1.0)
     models = course.model, replace(course.model, films=replace(course.model.films, nodes=nodes))
-    ends = [np.zeros_like(depth[-1])] + [depth[-1]] * (asked(built).profile == "updated")
+    ends = [np.zeros_like(depth[-1])] + [depth[-1]] * (wear_table(built).profile == "updated")
     rates = np.array(
         [
-            one_turn(
+            wear_of_turn(
                 design,
                 operation,
                 built.models[0],
@@ -468,7 +476,7 @@ def _figures(
     most = int(np.argmax(deepest[-1]))
     course = fastest[:, most]
     moves = bool(np.all(course > 0.0))
-    by = asked(built).severe_by
+    by = wear_table(built).severe_by
     severity = course if by == "rate" else pressure
     return {
         "final_cycles": cycles[-1],
@@ -489,16 +497,16 @@ def _sensitivities(built: Built, values: Mapping[str, np.ndarray]) -> dict[str, 
     if not _sensitive(built):
         return {}
     inputs = built.design, built.operation, course.model
-    choices = models, course.cells, int(asked(built).phases)
+    choices = models, course.cells, int(wear_table(built).phases)
     steps = values["cycles"], values["worn_depth"]
-    updated = asked(built).profile == "updated"
+    updated = wear_table(built).profile == "updated"
     sensitivities = march_sensitivities(inputs, *choices, *steps, updated=updated)
     return {name: derivatives._asdict() for name, derivatives in sensitivities.items()}
 
 
 def _sensitive(built: Built) -> bool:
     """True if derivatives are taken: never through solved films, on coupled teeth if they are asked for."""
-    wanted = asked(built).sensitivities
+    wanted = wear_table(built).sensitivities
     if wanted is None:
         wanted = not (built.design.mesh.body.couples and built.models[0].sharing.by_stiffness)
     return wanted and not _films(built)
@@ -512,7 +520,7 @@ def _films(built: Built) -> bool:
 def _warnings(
     built: Built, values: Mapping[str, np.ndarray], deepest: np.ndarray, end: str
 ) -> list[str]:
-    doubts = told_of_wear(built.case, _course(built).model)
+    doubts = wear_constant_doubts(built.case, _course(built).model)
     error = float(np.max(values["wear_error"][-1] / np.maximum(deepest[-1].max(), FIRST)))
     films = _course(built).model.films
     finer = "" if films is None else f"more film.nodes (of {films.nodes}), "
@@ -521,8 +529,9 @@ def _warnings(
             Doubt(
                 f"Wear: the largest depth may be {in_percent(error)} off by the grid on the flanks"
                 f"{'' if films is None else ', that of the films'} and the "
-                f"steps of the march; more wear.cells (of {int(asked(built).cells)}) and wear.phases (of "
-                f"{int(asked(built).phases)}), {finer}and a smaller wear.tolerance, tell.",
+                f"steps of the march; more wear.cells (of {int(wear_table(built).cells)}) and "
+                "wear.phases (of "
+                f"{int(wear_table(built).phases)}), {finer}and a smaller wear.tolerance, tell.",
                 "wear grid",
                 error,
                 moves=error,
@@ -545,7 +554,7 @@ def _warnings(
                 brief="Wear: nothing slides under load, or nothing wears off: depths are 0.",
             )
         )
-    if asked(built).sensitivities is None and not _sensitive(built) and not _films(built):
+    if wear_table(built).sensitivities is None and not _sensitive(built) and not _films(built):
         doubts.append(
             Doubt(
                 "Wear: what the life depends on is not told; its derivatives take minutes for teeth that a "
@@ -653,7 +662,7 @@ def _of_play(built: Built, teeth: Mapping[str, Any]) -> list[str]:
 
 def _lost(built: Built) -> str:
     """What may not be found of worn flanks, in words."""
-    return "the loads" if asked(built).load_ratio == "formula" else "the loads, or films,"
+    return "the loads" if wear_table(built).load_ratio == "formula" else "the loads, or films,"
 
 
 def _deepest(built: Built) -> float:

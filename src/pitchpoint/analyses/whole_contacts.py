@@ -9,7 +9,14 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.film_contacts import LEAST, asked, by_pairs, film_model_of, known, states
+from pitchpoint.analyses.film_contacts import (
+    LEAST,
+    by_pairs,
+    contact_states,
+    cycle_engagement,
+    film_model_of,
+    film_table,
+)
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.films import USUAL_ENDS, end_surfaces
 from pitchpoint.cases.height_maps import height_maps
@@ -24,7 +31,7 @@ from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.programs import program
 
-__all__ = ["Wholes", "in_the_middle", "one_contact", "wholes"]
+__all__ = ["Wholes", "in_the_middle", "one_contact", "whole_contacts"]
 
 PLACES = np.linspace(0.0, 1.0, 65)
 """Places along a contact line at which it is described, in parts of its length."""
@@ -66,7 +73,7 @@ def _grouped(values: np.ndarray, joined: bool) -> np.ndarray:
 
 
 @lru_cache(maxsize=2)
-def wholes(built: Built) -> Wholes:
+def whole_contacts(built: Built) -> Wholes:
     """Whole contacts of the cycle of a case.
 
     Slices of a pair at several places across the face are parts of one line; a family that gives a pair
@@ -75,7 +82,7 @@ def wholes(built: Built) -> Wholes:
     Raises:
         InputError: a profile of the ends of contact lines that come and go, or that does not fit.
     """
-    cycle_states, shapes = states(built), _shaped(built)
+    cycle_states, shapes = contact_states(built), _shaped(built)
     joined = bool(np.any(np.ptp(shapes["width"], axis=-1) > 0.0))
     parts = {
         name: _grouped(values, joined)
@@ -183,7 +190,7 @@ def one_contact(
         "fluid": model.fluid(design.lubricant, float(built.operation.temperature)),
         "texture": model.texture(rq, modulus),
         "conduction": model.conduction(design.lubricant),
-        "heights": height_maps(asked(built), moving=moving),
+        "heights": height_maps(film_table(built), moving=moving),
     }
     if design.mesh.shape == "ellipse":
         load, radius, transverse, speed_a, speed_b = numbers
@@ -205,8 +212,8 @@ def one_contact(
         speed_b=speed_b,
         places=length * (PLACES - 0.5),
         relief=relief,
-        profile=wholes(built).profile,
-        ends=asked(built).ends or USUAL_ENDS,
+        profile=whole_contacts(built).profile,
+        ends=film_table(built).ends or USUAL_ENDS,
         **common,
     )
 
@@ -214,7 +221,7 @@ def one_contact(
 def _profile(built: Built, found: dict[str, np.ndarray]) -> tuple[Surface, ...]:
     """Surfaces at the ends of contact lines that all span the face."""
     lengths = found["weight_of_line"][found["loaded"]]
-    if asked(built).end_profile is None or not lengths.size:
+    if film_table(built).end_profile is None or not lengths.size:
         return ()
     if np.ptp(lengths) > SPAN * lengths.max():
         raise InputError(
@@ -222,7 +229,7 @@ def _profile(built: Built, found: dict[str, np.ndarray]) -> tuple[Surface, ...]:
             "leave it out",
             key="film.end_profile",
         )
-    return end_surfaces(asked(built), float(lengths.max()), built.modulus)
+    return end_surfaces(film_table(built), float(lengths.max()), built.modulus)
 
 
 # ---- along the lines
@@ -294,7 +301,7 @@ def _shaped(built: Built) -> dict[str, np.ndarray]:
     """Where slices lie across the face, their gap but for surfaces, and what bends, [phase, pair, slice]."""
     models = built.models[0]
     terms = models.compliance if models.sharing.by_stiffness else None
-    engagement = replace(known(built), body=None)
+    engagement = replace(cycle_engagement(built), body=None)
     lanes = jax.device_get(_shapes(built.design, engagement, terms))
     return {name: by_pairs(built, values) for name, values in lanes.items()}
 

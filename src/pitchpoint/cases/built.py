@@ -18,8 +18,8 @@ from pitchpoint.cases.solids import (
     failures,
     fitted_on_steel,
     grown,
-    heated,
     heating,
+    solids_at_root_temperature,
     surrounded,
 )
 from pitchpoint.contact.surface import Surfaces
@@ -30,17 +30,17 @@ from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation
 from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
 from pitchpoint.efficiency.summary import engaged, summarise
-from pitchpoint.efficiency.warm_teeth import balance
+from pitchpoint.efficiency.warm_teeth import warm_teeth_program
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.families import family_of
 from pitchpoint.gears.family import Family, Followed
 from pitchpoint.gears.mesh import Mesh, coordinates_of
 from pitchpoint.gears.nominal_motion import mesh_ends, mesh_numbers, nominal_motion, tooth_size
-from pitchpoint.gears.pairs import way
+from pitchpoint.gears.pairs import way_of_pairs
 from pitchpoint.input.kinds import FORCE, TORQUE
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.lubrication.applicability import applies
+from pitchpoint.lubrication.applicability import why_inapplicable
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.registry import (
     ASPERITY_LOAD,
@@ -70,7 +70,7 @@ __all__ = [
     "Built",
     "MemberMotion",
     "MeshPeriod",
-    "covered",
+    "coverage_attributes",
     "ends_of",
     "operation_at",
     "without_bearing",
@@ -210,12 +210,12 @@ class Built:
             return self
         cold = _of_solids(self, cool)
         arguments = cold.design, cold.operation, cold.models[0], heating(case, cool)
-        balanced = jax.device_get(balance(*arguments))
+        balanced = jax.device_get(warm_teeth_program(*arguments))
         warmed = replace(cold, warming=balanced.status)
         if int(balanced.status.code) == Code.LOCKED:
             return warmed  # friction locks the mesh, which the computation says
         loss = {name: float(getattr(balanced, name)) for name in ("mean_friction", "loss_factor")}
-        return _of_solids(warmed, heated(case, cold.design, cool, loss))
+        return _of_solids(warmed, solids_at_root_temperature(case, cold.design, cool, loss))
 
     @property
     def heated(self) -> list[str]:
@@ -381,7 +381,9 @@ class Built:
     @property
     def applicable(self) -> list[FrictionLaw]:
         """Fitted friction laws of the library that hold for these contacts."""
-        return [law for law in LAWS if law.sources and applies(law, self.design.mesh) is None]
+        return [
+            law for law in LAWS if law.sources and why_inapplicable(law, self.design.mesh) is None
+        ]
 
     @property
     def temperatures(self) -> tuple[float, float]:
@@ -494,7 +496,7 @@ class Built:
     @property
     def period(self) -> MeshPeriod:
         """After what the mesh is as it was."""
-        words, backwards = way(self.design.mesh), self.nominal["onward"] < 0.0
+        words, backwards = way_of_pairs(self.design.mesh), self.nominal["onward"] < 0.0
         against = words.against.format(self.driver) if backwards else ""
         return MeshPeriod(float(self.nominal["period"]), words.pitch, against)
 
@@ -545,7 +547,7 @@ class Built:
     def way(self) -> dict[str, str | float]:
         """Words of the way of a pair, as attributes of places on it."""
         touching = [body.body for body in self.bodies if body.member is not None]
-        return way(self.design.mesh).attributes(touching)
+        return way_of_pairs(self.design.mesh).attributes(touching)
 
     @property
     def carried(self) -> Quantity:
@@ -557,7 +559,7 @@ class Built:
         """What the efficiency is of, as an attribute, where it is less than a whole drive."""
         if not self.case.gears.transmits:
             return {}
-        return covered(self.places, lacks_bearing=self.lacks_bearing)
+        return coverage_attributes(self.places, lacks_bearing=self.lacks_bearing)
 
     @property
     def lacks_bearing(self) -> bool:
@@ -628,7 +630,7 @@ def operation_at(point: Operating) -> Operation:
     return Operation(array(point.load), array(point.speed), array(point.temperature))
 
 
-def covered(places: Sequence[str], *, lacks_bearing: bool) -> dict[str, str]:
+def coverage_attributes(places: Sequence[str], *, lacks_bearing: bool) -> dict[str, str]:
     """Attributes on what an efficiency is of, and on what it lacks; none where it is of a whole drive.
 
     Args:

@@ -16,7 +16,7 @@ from pitchpoint.cases.built import (
     Built,
     MemberMotion,
     MeshPeriod,
-    covered,
+    coverage_attributes,
     operation_at,
 )
 from pitchpoint.cases.document import STAGES, Document
@@ -284,7 +284,7 @@ class BuiltDrive:
     @property
     def covers(self) -> dict[str, str]:
         """What the efficiency is of, see `Built.covers`."""
-        return covered(self.places, lacks_bearing=self.lacks_bearing)
+        return coverage_attributes(self.places, lacks_bearing=self.lacks_bearing)
 
     @property
     def lacks_bearing(self) -> bool:

@@ -8,12 +8,12 @@ from pydantic import BaseModel, ValidationError
 
 from pitchpoint.cases.document import Document, too_many
 from pitchpoint.cases.keys import ANY_NAME, meant
-from pitchpoint.cases.wishes import answer, answered, no_family, value_advice
+from pitchpoint.cases.wishes import keys_for_wish, no_family, value_advice, wish_answer
 from pitchpoint.errors import CollectedInputError, InputError, shorten
 from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.input.quantities import shown
-from pitchpoint.input.tables import DECIDING, alternatives, fields_at, quantity_of
-from pitchpoint.registry import alike, listed
+from pitchpoint.input.tables import DECIDING, alternatives, field_quantity, fields_at
+from pitchpoint.registry import listed, similar_names
 
 __all__ = ["complaint_of"]
 
@@ -97,7 +97,8 @@ def _left_missing(
     """True for a missing key that stands there in another spelling."""
     beside = (sibling for sibling in unknown if sibling[:-1] == place[:-1])
     return same[0]["type"] == "missing" and any(
-        place[-1] in answered(sibling, tree) or alike(sibling[-1], place[-1:]) for sibling in beside
+        place[-1] in keys_for_wish(sibling, tree) or similar_names(sibling[-1], place[-1:])
+        for sibling in beside
     )
 
 
@@ -160,7 +161,7 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
             fields_at(detail["loc"], model),
         )
         place = _place_of(detail, document)
-        advice = answer(place, stated, document.tree, fields) or meant(
+        advice = wish_answer(place, stated, document.tree, fields) or meant(
             place, fields, model, document.tree
         )
         return f"is not a known {what}{advice}"
@@ -185,7 +186,7 @@ def _message(detail: Any, document: Document, model: type[BaseModel]) -> str:
 def _as_list(location: tuple[Any, ...], model: type[BaseModel]) -> str:
     """End of a sentence on a value in the place of a list of quantities: what to write."""
     info = fields_at(location, model).get(str(location[-1]))
-    quantity = None if info is None else quantity_of(info)
+    quantity = None if info is None else field_quantity(info)
     return "" if quantity is None else f"; write [{quantity.example}]; {quantity.allowed}"
 
 
@@ -223,7 +224,7 @@ def _needed(location: tuple[Any, ...], model: type[BaseModel]) -> str:
         return ""
     if info.examples and get_origin(info.annotation) is tuple:
         return f"; write a list such as {json.dumps(info.examples[0])}"
-    quantity = quantity_of(info)
+    quantity = field_quantity(info)
     if quantity is not None:
         return f"; write {quantity.example}; {quantity.allowed}"
     if len(location) == 1:

@@ -29,8 +29,8 @@ __all__ = [
     "files_of",
     "leaves",
     "parsed",
-    "put",
-    "read",
+    "read_tables",
+    "set_key",
     "setting",
     "strip",
     "too_many",
@@ -111,7 +111,7 @@ class Document:
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
 
-def read(path: Path) -> Tree:
+def read_tables(path: Path) -> Tree:
     """Tables of a TOML file, marks included.
 
     Raises:
@@ -394,7 +394,7 @@ def setting(
             both = node[above] if above in node else usual(".".join(parents), tree)
             node[parents[-1]] = _of_gear(both, leaf, value)
         else:
-            put(result, key, value)
+            set_key(result, key, value)
     except InputError as error:
         raise error.at(file=name, key=key) from None
     return result
@@ -411,7 +411,7 @@ def _copied(tree: Tree, parents: list[str]) -> Tree:
     return result
 
 
-def put(tree: Tree, key: str, value: Any) -> None:
+def set_key(tree: Tree, key: str, value: Any) -> None:
     """Put a value at a dotted key into tables; InputError if a value stands where a table is needed."""
     *parents, leaf = key.split(".")
     _table(tree, parents)[leaf] = value

@@ -20,7 +20,7 @@ from pitchpoint.plain_files import content, digest
 from pitchpoint.results.store import MOST_BYTES, write_bytes, write_text
 from pitchpoint.units import si_unit
 
-__all__ = ["FILES", "as_toml", "hand_over"]
+__all__ = ["FILES", "as_toml", "write_case_copy"]
 
 FILES = "files"
 """Folder beside it with the files that it names."""
@@ -29,7 +29,7 @@ _FIRST = ("title", "summary", "source")
 _HEAD = "The case as it was run, settings applied; pitchpoint run computes it again."
 
 
-def hand_over(
+def write_case_copy(
     document: Document, folder: Path, *, title: str = "", studies: Mapping[str, Study] | None = None
 ) -> None:
     """Write the case file of a result, and copies of the files that it names.

@@ -14,7 +14,7 @@ from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.loss_sets import NOT_THERE, SET, SET_TOLD
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.table import GearsTable
-from pitchpoint.input.tables import alternatives, measure_of, sentences, usual_words
+from pitchpoint.input.tables import alternatives, key_sentences, measure_of, usual_words
 
 __all__ = ["case_schema", "table_schema"]
 
@@ -128,7 +128,7 @@ _OF_ONE_OR_SEVERAL = ("friction", "at")
 
 def _loosen(table: dict[str, Any], model: type[BaseModel]) -> None:
     """Takes what the reader takes: marks, one in place of a list, stages in a list, sets of losses."""
-    descriptions = sentences(model)
+    descriptions = key_sentences(model)
     for key, value in table.get("properties", {}).items():
         words = _words(value, model.model_fields[key], descriptions.get(key, ""))
         options = [value, *_other_ways(key, value), {"$ref": f"#/{_DEFS}/mark"}]

@@ -9,7 +9,7 @@ from pydantic.fields import FieldInfo
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.drive_schema import DriveCase, StageTable, check_stage, form_of, is_planetary
 from pitchpoint.cases.schema import CaseFile
-from pitchpoint.cases.wishes import answer, elsewhere
+from pitchpoint.cases.wishes import other_table_hint, wish_answer
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.input.tables import (
@@ -20,7 +20,7 @@ from pitchpoint.input.tables import (
     quantity_in,
     quantity_of_any,
 )
-from pitchpoint.registry import alike, nearest
+from pitchpoint.registry import nearest, similar_names
 
 __all__ = ["ANY_NAME", "keys", "meant", "quantity_at", "usual_at"]
 
@@ -42,7 +42,7 @@ def quantity_at(key: str, tree: Any = None) -> Quantity | None:
         return quantity_in(key, tree, [form_of(tree)])
     except UnknownKeyError as error:
         root = form_of(tree) if isinstance(tree, Mapping) else CaseFile
-        advice = answer(error.place, None, {}, error.known_keys) or meant(
+        advice = wish_answer(error.place, None, {}, error.known_keys) or meant(
             error.place, error.known_keys, root, tree
         )
         raise InputError(f"{error.message}{advice}", key=key) from None
@@ -116,8 +116,8 @@ def meant(place: Sequence[str], known: Collection[str], model: type[BaseModel], 
     tables = [f"[{stage}{name}]" for name in (near or flat or every)[:_FEW_TABLES]]
     if key in model.model_fields and forms(model.model_fields[key].annotation):
         return f"; [{key}] is a table of its own"
-    if alike(key, known, _SLIP) or not tables:
-        return ("" if alike(key, known) else elsewhere(key)) or nearest(key, known)
+    if similar_names(key, known, _SLIP) or not tables:
+        return ("" if similar_names(key, known) else other_table_hint(key)) or nearest(key, known)
     return f"; {' and '.join(tables)} {'has' if len(tables) == 1 else 'have'} that key"
 
 

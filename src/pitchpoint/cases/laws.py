@@ -55,9 +55,9 @@ class FrictionChoice(BaseModel):
     def _own(self) -> "FrictionChoice":
         if not self.model_extra:
             return self
-        from pitchpoint.lubrication.conditions import arguments
+        from pitchpoint.lubrication.conditions import law_arguments
 
-        _, constants = arguments(FRICTION[self.name].function)
+        _, constants = law_arguments(FRICTION[self.name].function)
         for key, value in self.model_extra.items():
             if key not in constants:
                 has = nearest(key, constants) if constants else "; it has none"

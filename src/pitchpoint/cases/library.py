@@ -7,17 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pitchpoint import published
-from pitchpoint.cases.document import Tree, read
+from pitchpoint.cases.document import Tree, read_tables
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.registry import nearest
 
-__all__ = ["as_text", "find", "names", "path_of", "table"]
+__all__ = ["as_text", "case_names", "case_path", "find_case", "table"]
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def names() -> list[str]:
+def case_names() -> list[str]:
     """Names of the shipped cases."""
     return [*_shipped()]
 
@@ -31,19 +31,19 @@ def _shipped() -> tuple[str, ...]:
     )
 
 
-def path_of(case: str) -> Path:
+def case_path(case: str) -> Path:
     """File of a shipped case, or the file itself.
 
     Raises:
         InputError: neither a shipped case nor a file.
     """
-    if case in names():
+    if case in case_names():
         return Path(str(resources.files(published) / case / "case.toml"))
     if Path(case).suffix == "" and not _exists(Path(case)):
         from pitchpoint.cases.other_formats import neighbours
 
         message = f"'{shorten(case)}' is neither a shipped case nor a file"
-        raise InputError(f"{message}{neighbours(Path(case)) or nearest(case, names())}")
+        raise InputError(f"{message}{neighbours(Path(case)) or nearest(case, case_names())}")
     return Path(case)
 
 
@@ -73,19 +73,19 @@ def _exists(path: Path) -> bool:
         return False
 
 
-def find(case: str) -> tuple[str, Tree]:
+def find_case(case: str) -> tuple[str, Tree]:
     """Short name and tables of a case by its name or its file.
 
     Raises:
         InputError: none is given; what is given belongs to a result, or is no case file.
     """
     if not case.strip():
-        raise InputError(f"no case was given; name a file or one of {', '.join(names())}")
-    path = path_of(case)
+        raise InputError(f"no case was given; name a file or one of {', '.join(case_names())}")
+    path = case_path(case)
     if reason := _of_a_result(path):
         raise InputError(reason, file=visible(as_text(case)))
-    tree = read(path)
-    return (case if case in names() else visible(as_text(path.name))), tree
+    tree = read_tables(path)
+    return (case if case in case_names() else visible(as_text(path.name))), tree
 
 
 def as_text(path: str) -> str:
@@ -102,5 +102,7 @@ def table() -> "pd.DataFrame":
     """
     import pandas as pd
 
-    rows = [{"case": name, "title": str(find(name)[1].get("title", ""))} for name in names()]
+    rows = [
+        {"case": name, "title": str(find_case(name)[1].get("title", ""))} for name in case_names()
+    ]
     return pd.DataFrame(rows).set_index("case")

@@ -21,8 +21,8 @@ from pitchpoint.input.remembered import remembering
 from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.applicability import applies
-from pitchpoint.lubrication.conditions import FILM, Law, arguments, demand_shape
+from pitchpoint.lubrication.applicability import why_inapplicable
+from pitchpoint.lubrication.conditions import FILM, Law, demand_shape, law_arguments
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
 from pitchpoint.lubrication.registry import (
@@ -77,7 +77,7 @@ def models_of(
 
 def _beside_film(own: FrictionLaw, case: CaseFile) -> FrictionLaw:
     """A law of the user's own, with the film law of the case where it asks for a film."""
-    wanted, _ = arguments(own.function)
+    wanted, _ = law_arguments(own.function)
     if own.film is not None or not {*FILM} & {*wanted}:
         return own
     return _of_film(own, inlet_law(FILM_THICKNESS[case.models.film_thickness], case.models))
@@ -146,7 +146,7 @@ def _law(name: str, case: CaseFile, used: Sequence[SolidInUse], mesh: Mesh) -> F
 
 def _parameters(law: FrictionLaw, given: Mapping[str, float]) -> dict[str, jax.Array]:
     """Values of a law's own parameters, by default those of its formula."""
-    _, defaults = arguments(law.function)
+    _, defaults = law_arguments(law.function)
     return {key: array(given.get(key, default), jnp.float64) for key, default in defaults.items()}
 
 
@@ -190,7 +190,7 @@ def check_shapes(case: CaseFile, mesh: Mesh, own: ChosenLaws, wrong: Complaints)
 def check_hardness(case: CaseFile, used: Sequence[SolidInUse]) -> None:
     """InputError if a law asks for the hardness of a gear whose material has none."""
     law = ASPERITY_LOAD[case.models.asperity_load]
-    if "hardness" not in arguments(law.function)[0]:
+    if "hardness" not in law_arguments(law.function)[0]:
         return
     for gear, solid in enumerate(used, 1):
         if solid.record.hardness is None:
@@ -205,8 +205,8 @@ def check_models(case: CaseFile, mesh: Mesh, wrong: Complaints) -> None:
     """Complains of models of the case that do not hold for these gears."""
     models = case.models
     for place, choice in enumerate(models.friction):
-        if why_not := applies(FRICTION[choice.name], mesh):
-            others = ", ".join(law.name for law in LAWS if applies(law, mesh) is None)
+        if why_not := why_inapplicable(FRICTION[choice.name], mesh):
+            others = ", ".join(law.name for law in LAWS if why_inapplicable(law, mesh) is None)
             message = f"{why_not}; choose one of {others}"
             wrong.add(InputError(message, key="models.friction", value=place))
     wrong.under("models.load_sharing").tried(

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from pitchpoint.errors import shorten
-from pitchpoint.registry import alike
+from pitchpoint.registry import similar_names
 from pitchpoint.units import comma_readings
 
 __all__ = ["neighbours", "not_toml", "not_utf_8"]
@@ -129,6 +129,6 @@ def neighbours(path: Path) -> str:
         files = sorted(path.parent.glob("*.toml"))[:1000]
     except (OSError, ValueError):
         return ""
-    close = alike(path.name.partition(".")[0], [file.stem for file in files])
+    close = similar_names(path.name.partition(".")[0], [file.stem for file in files])
     names = [file.name for file in files if file.stem in close and file.name != path.name]
     return f"; did you mean {' or '.join(map(shorten, names))}?" if names else ""

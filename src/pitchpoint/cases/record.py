@@ -23,8 +23,8 @@ from pydantic import (
 )
 
 from pitchpoint import units
-from pitchpoint.cases.document import Tree, demand_shallow, put
-from pitchpoint.cases.library import as_text, names, path_of
+from pitchpoint.cases.document import Tree, demand_shallow, set_key
+from pitchpoint.cases.library import as_text, case_names, case_path
 from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.plain_files import content
@@ -41,9 +41,9 @@ __all__ = [
     "Manifest",
     "Record",
     "default_folder",
+    "folder_record",
     "is_record",
     "is_result",
-    "owner",
     "sources_of",
 ]
 
@@ -140,7 +140,7 @@ class Record(_Kept):
 
     def demand_own(self, folder: Path) -> None:
         """InputError if the folder holds results of another case."""
-        theirs = owner(folder)
+        theirs = folder_record(folder)
         if theirs is not None and theirs.mark != self.mark:
             raise InputError(
                 f"holds results of another case, {shorten(theirs.mark)}; give another folder, or"
@@ -372,7 +372,7 @@ class Manifest(_Kept):
         tree: Tree = {key: getattr(self, key) for key in ("title", "summary", "source")}
         for row in self.inputs:
             if row.given:
-                put(tree, f"{row.table}.{row.key}".removesuffix("."), row.entry)
+                set_key(tree, f"{row.table}.{row.key}".removesuffix("."), row.entry)
         demand_shallow(tree, "")
         tree["issues"] = [issue.model_dump() for issue in self.issues]
         if self.targets:
@@ -406,7 +406,7 @@ def is_record(case: str) -> bool:
 
 def is_result(case: str) -> bool:
     """True if a case is given by the folder of a result of it."""
-    return case not in names() and os.path.isfile(os.path.join(case, RUN))
+    return case not in case_names() and os.path.isfile(os.path.join(case, RUN))
 
 
 def sources_of(manifests: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
@@ -418,7 +418,7 @@ def sources_of(manifests: Iterable[Mapping[str, Any]]) -> list[dict[str, str]]:
     return [{"key": key, "text": text, "of": ", ".join(of)} for (key, text), of in uses.items()]
 
 
-def owner(folder: Path) -> Record | None:
+def folder_record(folder: Path) -> Record | None:
     """Whose folder it is; None if nobody's, or if its record cannot be read."""
     try:
         return Record.read(folder / RUN)
@@ -443,7 +443,7 @@ def default_folder(case: str, root: Path, settings: Mapping[str, Any] | None = N
     parts = _parts(case)
     names_ = ["-".join(parts[-count:]) for count in range(1, len(parts) + 1)]
     folders = [root / f"{name}{_suffix(words)}" for name in names_]
-    owners = {folder: owner(folder) for folder in folders}
+    owners = {folder: folder_record(folder) for folder in folders}
     of_same = [place for place, of in owners.items() if of and _same(of, case, place, words)]
     free = [place for place, of in owners.items() if of is None]
     return [*of_same, *free, *folders][0]
@@ -451,9 +451,9 @@ def default_folder(case: str, root: Path, settings: Mapping[str, Any] | None = N
 
 def _parts(case: str) -> tuple[str, ...]:
     """Names from the root down whose last ones name the folder of a case."""
-    path = Path(os.path.abspath(path_of(case)))
-    if case in names() or is_result(case):
-        return path.parent.parts[1:] if case in names() else path.parts[1:]
+    path = Path(os.path.abspath(case_path(case)))
+    if case in case_names() or is_result(case):
+        return path.parent.parts[1:] if case in case_names() else path.parts[1:]
     if path.name == CASE and is_result(str(path.parent.parent)):
         return (*path.parent.parent.parts[1:-1], f"{path.parent.parent.name}-{path.parent.name}")
     return (*path.parent.parts[1:], path.stem)
@@ -481,9 +481,9 @@ _LONGEST = 80
 
 
 def _way(case: str, folder: Path) -> str:
-    if case in names():
+    if case in case_names():
         return ""
-    file = os.path.realpath(path_of(case))
+    file = os.path.realpath(case_path(case))
     with suppress(ValueError):  # on another drive
         file = os.path.relpath(file, os.path.realpath(folder))
     return as_text(file)

@@ -44,10 +44,10 @@ from pitchpoint.input.kinds import (
 from pitchpoint.input.quantities import shown
 from pitchpoint.input.tables import (
     Table,
-    by,
+    field_quantity,
     is_stated,
-    quantity_of,
     quantity_of_any,
+    table_by_key,
 )
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.materials.material_tables import (
@@ -104,7 +104,7 @@ Formulas = Annotated[
     | Annotated[PairInMotion, Tag("pair in motion")]
     | Annotated[PairOnPath, Tag("pair on path")],
     Field(
-        discriminator=by(
+        discriminator=table_by_key(
             "form", TorusFormulas, ZoneFilms, FlankWear, ConjugateWear, PairInMotion, PairOnPath
         )
     ),
@@ -286,7 +286,7 @@ def check_load(case: "CaseFile | DriveCase", gears: GearsTable | PlanetaryGears)
         message = f"{gears.carries}; give {name.replace(unwanted, wanted)} in place of {name}"
         raise InputError(message, key=key)
     if getattr(point, wanted) is None:
-        quantity = quantity_of(Operating.model_fields[wanted])
+        quantity = field_quantity(Operating.model_fields[wanted])
         assert quantity is not None
         missing = f"is missing; write {quantity.example}; {quantity.allowed}"
         raise InputError(missing, key=f"operation.{wanted}")

@@ -29,8 +29,8 @@ __all__ = [
     "failures",
     "fitted_on_steel",
     "grown",
-    "heated",
     "heating",
+    "solids_at_root_temperature",
     "solids_in_use",
     "surrounded",
 ]
@@ -191,7 +191,9 @@ def surrounded(used: Used, temperature: float) -> Used:
     return gear_1, gear_2
 
 
-def heated(case: CaseFile, design: Design, used: Used, found: Mapping[str, float]) -> Used:
+def solids_at_root_temperature(
+    case: CaseFile, design: Design, used: Used, found: Mapping[str, float]
+) -> Used:
     """Materials with plastic gears at the temperature of their tooth roots.
 
     The tooth yields most in its root and body, so the temperature there sets its modulus.

@@ -21,7 +21,7 @@ from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.validation import planetary_of, validate, with_meshes
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drag import drags
-from pitchpoint.efficiency.drive import Drive, chained, owner
+from pitchpoint.efficiency.drive import Drive, chained, loss_owner
 from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.mesh import Mesh
@@ -148,11 +148,11 @@ def _mended(
 
 def _ended_with_cures(error: InputError, sound: Sequence[Tree]) -> InputError:
     """An error of a mesh of a set with changes that mend it."""
-    from pitchpoint.gears.cylindrical.cures import told_with_cures
+    from pitchpoint.gears.cylindrical.cures import error_with_cures
 
     longer = copy.copy(error)
     bare = [{key.removeprefix("gears."): value for key, value in cure.items()} for cure in sound]
-    longer.message, longer.cures = told_with_cures(error.message, bare), tuple(sound)
+    longer.message, longer.cures = error_with_cures(error.message, bare), tuple(sound)
     return longer
 
 
@@ -537,7 +537,7 @@ def _drive(case: DriveCase, built: Sequence[Built | BuiltTrain]) -> Drive:
     placed = drags(case.losses, bodies, inner - {frozenset()})
     for (name, loss), drag in zip(case.losses.items(), placed, strict=True):
         try:
-            overcome_by = links[owner(drag, links)]
+            overcome_by = links[loss_owner(drag, links)]
         except InputError as error:
             raise error.at(key=f"losses.{name}.between") from None
         placed_along = {"position", "locating"} & loss.model_fields_set

@@ -20,7 +20,7 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.families import TABLES, sample_of
 from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.input.quantities import Pair, Quantity
-from pitchpoint.input.tables import alternatives, forms, quantity_of, sentences, tag
+from pitchpoint.input.tables import alternatives, field_quantity, forms, key_sentences, tag
 from pitchpoint.registry import known_as
 
 __all__ = ["FAMILIES", "sample_tree", "table_lines", "template"]
@@ -186,7 +186,7 @@ def table_lines(model: type[BaseModel], path: str, given: Tree, *, live: bool) -
     yield ""
     yield from _remark(model)
     yield f"{'' if live else '# '}[{path}]"
-    inner, descriptions = [], sentences(model)
+    inner, descriptions = [], key_sentences(model)
     for key, info in model.model_fields.items():
         tables = _inner(info, given.get(key))
         if tables is not None:
@@ -250,7 +250,7 @@ def _options(info: FieldInfo) -> tuple[Any, ...]:
 
 def _example(info: FieldInfo) -> Any:
     """The usual value of a key, or one that it may have."""
-    quantity, usual = quantity_of(info), info.default
+    quantity, usual = field_quantity(info), info.default
     if info.is_required() and info.examples:
         return info.examples[0]
     if quantity is not None:
@@ -306,7 +306,7 @@ def _read(text: str) -> str | float:
 
 def _words(info: FieldInfo, sentence: str) -> str:
     """What a key is, and what it takes, as a remark behind it."""
-    quantity, names = quantity_of(info), _names(info)
+    quantity, names = field_quantity(info), _names(info)
     if quantity is not None:
         allowed = quantity.allowed
     elif names:

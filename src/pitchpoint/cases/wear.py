@@ -25,7 +25,7 @@ from pitchpoint.wear.march import Limit
 from pitchpoint.wear.registry import WEAR_LAWS, WearLaw
 from pitchpoint.wear.wear_tables import WearTable
 
-__all__ = ["ASSUMED_COEFFICIENT", "check_wear", "limit_of", "told_of_wear", "wear_model"]
+__all__ = ["ASSUMED_COEFFICIENT", "check_wear", "limit_of", "wear_constant_doubts", "wear_model"]
 
 ASSUMED_COEFFICIENT = 1e-5
 """Coefficient of Archard where none is given: known ones of dry metals are 1e-6 to 1e-4."""
@@ -239,7 +239,7 @@ def _conductors(used: Used) -> tuple[Conductor, Conductor] | None:
     return gear_1, gear_2
 
 
-def told_of_wear(case: CaseFile, model: WearModel) -> list[str]:
+def wear_constant_doubts(case: CaseFile, model: WearModel) -> list[str]:
     """What to be wary of in the constants of a case.
 
     Args:

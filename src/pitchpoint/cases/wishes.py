@@ -37,7 +37,7 @@ from pitchpoint.input.tables import quantity_in
 from pitchpoint.materials.data import oil_names
 from pitchpoint.registry import letters, listed, nearest
 
-__all__ = ["WISHES", "Wish", "answer", "answered", "elsewhere", "value_advice"]
+__all__ = ["WISHES", "Wish", "keys_for_wish", "other_table_hint", "value_advice", "wish_answer"]
 
 Tree = Mapping[str, Any]
 Write = Callable[[Any, Tree, Tree], str]
@@ -77,7 +77,9 @@ class Wish:
     write: Write | None = None
 
 
-def answer(place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]) -> str | None:
+def wish_answer(
+    place: Sequence[str], value: Any, tree: Tree, fields: Collection[str]
+) -> str | None:
     """What is told of a key that is a wish, after "is not a known key"; None where it is none.
 
     Args:
@@ -162,7 +164,7 @@ _NO_FAMILIES = {
 }
 
 
-def answered(place: Sequence[str], tree: Tree) -> tuple[str, ...]:
+def keys_for_wish(place: Sequence[str], tree: Tree) -> tuple[str, ...]:
     """Keys that say what stands at a place under a name of its own; none where it is no wish.
 
     Args:
@@ -173,7 +175,7 @@ def answered(place: Sequence[str], tree: Tree) -> tuple[str, ...]:
     return () if wish is None else wish.keys
 
 
-def elsewhere(name: str) -> str:
+def other_table_hint(name: str) -> str:
     """End of a sentence on a wish that one other table answers; empty where none does, or several do.
 
     A name of one letter is none: it means too much.

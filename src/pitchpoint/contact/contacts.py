@@ -9,7 +9,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
 
-__all__ = ["KINDS", "TOUCH", "Contacts", "Shape", "along", "total"]
+__all__ = ["KINDS", "TOUCH", "Contacts", "Shape", "contact_velocity", "total"]
 
 Shape = Literal["line", "ellipse"]
 
@@ -95,7 +95,9 @@ class Contacts(eqx.Module):
         return 1.0 / (self.relative_curvature[0] if self.felt is None else self.felt)
 
 
-def along(arms: Float[Arrays, "dof *b"], rates: Float[Arrays, "dof ..."]) -> Float[Arrays, "*b"]:
+def contact_velocity(
+    arms: Float[Arrays, "dof *b"], rates: Float[Arrays, "dof ..."]
+) -> Float[Arrays, "*b"]:
     """Velocity at each contact for given rates of the coordinates: sum of arms times rates."""
     return sum((rates[k] * arms[k] for k in range(1, arms.shape[0])), rates[0] * arms[0])
 

@@ -4,9 +4,9 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.elliptic_integrals import carlson_rd, complete
+from pitchpoint.contact.elliptic_integrals import carlson_rd, complete_integrals
 from pitchpoint.factored import Numbers
-from pitchpoint.roots import root
+from pitchpoint.roots import find_root
 
 __all__ = [
     "Ellipse",
@@ -62,7 +62,7 @@ def hertz_1881(*, load: Each, radius: Each, transverse_radius: Each, modulus: Ea
         (938, 1.61)
     """
     ratio = _ratio_of_axes(jnp.asarray(transverse_radius / radius))
-    first_kind, cosine, sine = complete(ratio**-2)
+    first_kind, cosine, sine = complete_integrals(ratio**-2)
     second_kind = cosine + sine / ratio**2
     return _ellipse(load, radius, transverse_radius, modulus, (ratio, first_kind, second_kind))
 
@@ -124,10 +124,10 @@ def _ratio_of_axes(radii: Float[Array, "*b"]) -> Float[Array, "*b"]:
     """Semi-axis across over that along for a ratio R_y/R_x."""
 
     def missing(ratio: Float[Array, "*b"]) -> Float[Array, "*b"]:
-        _, cosine, sine = complete(ratio**-2)
+        _, cosine, sine = complete_integrals(ratio**-2)
         return jnp.log(ratio**2 * cosine / (sine * radii))
 
-    ratio_of_axes, _ = root(missing, radii ** (2.0 / jnp.pi), 2.0 * jnp.maximum(radii, 1.0))
+    ratio_of_axes, _ = find_root(missing, radii ** (2.0 / jnp.pi), 2.0 * jnp.maximum(radii, 1.0))
     return ratio_of_axes
 
 
@@ -159,7 +159,7 @@ def largest_shear(contact: Ellipse, poisson: Each) -> tuple[Float[Array, "*b"], 
         )[1]
         return -derivative
 
-    depth, _ = root(slope, jnp.full_like(short, 0.6), _DEEPEST)
+    depth, _ = find_root(slope, jnp.full_like(short, 0.6), _DEEPEST)
     stress = contact.pressure * _shear_below(depth, squeeze, poisson)
     return stress, jnp.where(carries, depth * short, 0.0)
 

@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Numbers
 
-__all__ = ["carlson_rd", "carlson_rf", "complete"]
+__all__ = ["carlson_rd", "carlson_rf", "complete_integrals"]
 
 Each = Float[Numbers, "*#b"]
 
@@ -68,7 +68,9 @@ def carlson_rd(x: Each, y: Each, z: Each) -> Float[Array, "*b"]:
     return 4.0**-_DOUBLINGS * series / (mean * jnp.sqrt(mean)) + 3.0 * passed
 
 
-def complete(complement: Each) -> tuple[Float[Array, "*b"], Float[Array, "*b"], Float[Array, "*b"]]:
+def complete_integrals(
+    complement: Each,
+) -> tuple[Float[Array, "*b"], Float[Array, "*b"], Float[Array, "*b"]]:
     """Complete integrals K = int 1/D, of cos^2/D and of sin^2/D from 0 to pi/2, D^2 = 1 - m sin^2.
 
     Their second and third sum to K, and E = K - m times the third.

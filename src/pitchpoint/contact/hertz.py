@@ -3,7 +3,7 @@
 from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, root
+from pitchpoint.factored import Numbers, square_root
 
 __all__ = ["line_half_width", "line_pressure", "line_shear"]
 
@@ -31,7 +31,7 @@ def line_half_width(*, line_load: Each, radius: Each, modulus: Each) -> Each:
         >>> round(float(half_width) * 1e6)
         106
     """
-    half_width: Each = root(8.0 * line_load * radius / (jnp.pi * modulus))
+    half_width: Each = square_root(8.0 * line_load * radius / (jnp.pi * modulus))
     return half_width
 
 
@@ -50,7 +50,7 @@ def line_pressure(*, line_load: Each, radius: Each, modulus: Each) -> Each:
         >>> round(float(pressure) / 1e6)
         600
     """
-    pressure: Each = root(line_load * modulus / (2.0 * jnp.pi * radius))
+    pressure: Each = square_root(line_load * modulus / (2.0 * jnp.pi * radius))
     return pressure
 
 

@@ -15,7 +15,7 @@ from pitchpoint.duty_cycle.energy import (
     at_the_edge,
     demand_inside,
     driver_course,
-    energies,
+    duty_energies,
     mean_load,
 )
 from pitchpoint.duty_cycle.first_failure import first_failure
@@ -167,7 +167,7 @@ def duty_dataset(
     extra = extra.assign_attrs({"runaway": runaway} if runaway else {})
     failing = first_failure(extra, None if heating is None else heating.limits)
     ends: tuple[End, ...] = ("loaded",) if travels else ()
-    numbers = energies(warm.history, driver)
+    numbers = duty_energies(warm.history, driver)
     if warnings := [*attributes.pop("warnings", []), *at_the_edge(table, warm.history)]:
         attributes["warnings"] = warnings
     numbers |= {

@@ -16,7 +16,7 @@ __all__ = [
     "at_the_edge",
     "demand_inside",
     "driver_course",
-    "energies",
+    "duty_energies",
     "mean_load",
 ]
 
@@ -202,7 +202,7 @@ def _demand_limits(motor: Motor, torque: Floats, speed: Floats, history: LoadHis
             )
 
 
-def energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
+def duty_energies(history: LoadHistory, driver: DriverCourse) -> dict[str, float]:
     """Energies [J] and means over the cycle.
 
     Args:

@@ -10,19 +10,19 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.errors import InputError
 from pitchpoint.gears.coordinates import Coordinate
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 
 __all__ = [
     "Body",
     "Support",
-    "across",
+    "bearing_damping",
     "bearing_forces",
-    "damping",
+    "bearing_stiffness",
     "masses",
     "motor",
     "moved_masses",
     "on_all_coordinates",
-    "stiffness",
+    "radial_bearings",
 ]
 
 Matrix = Float[Array, "coordinate coordinate"]
@@ -39,10 +39,10 @@ class Support(eqx.Module):
         damping: likewise [N s/m].
     """
 
-    mass: Float[Array, ""] = eqx.field(converter=as_array)
-    ways: Float[Array, "way 3"] = eqx.field(converter=as_array)
-    stiffness: Float[Array, "way way"] = eqx.field(converter=as_array)
-    damping: Float[Array, "way way"] = eqx.field(converter=as_array)
+    mass: Float[Array, ""] = eqx.field(converter=float64_array)
+    ways: Float[Array, "way 3"] = eqx.field(converter=float64_array)
+    stiffness: Float[Array, "way way"] = eqx.field(converter=float64_array)
+    damping: Float[Array, "way way"] = eqx.field(converter=float64_array)
 
 
 class Body(eqx.Module):
@@ -61,11 +61,11 @@ class Body(eqx.Module):
     From Coulomb's friction, made smooth about rest by tanh.
     """
 
-    inertia: Float[Array, ""] = eqx.field(converter=as_array)
-    torque: Float[Array, " knot"] = eqx.field(converter=as_array, default=(0.0,))
-    resistance: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
-    creep: Float[Array, ""] = eqx.field(converter=as_array, default=1e-3)
-    viscous: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    inertia: Float[Array, ""] = eqx.field(converter=float64_array)
+    torque: Float[Array, " knot"] = eqx.field(converter=float64_array, default=(0.0,))
+    resistance: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
+    creep: Float[Array, ""] = eqx.field(converter=float64_array, default=1e-3)
+    viscous: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
     support: Support | None = None
 
 
@@ -92,10 +92,12 @@ def motor(*, stall_torque: float, no_load_speed: float, inertia: float) -> Body:
     if not no_load_speed > 0.0:
         raise InputError(f"no-load speed of a motor is above 0 rad/s, got {no_load_speed:g}")
     viscous = abs(stall_torque) / no_load_speed
-    return Body(as_array(inertia), as_array([stall_torque]), viscous=as_array(viscous))
+    return Body(
+        float64_array(inertia), float64_array([stall_torque]), viscous=float64_array(viscous)
+    )
 
 
-def across(mass: float, stiffness: float, damping: float = 0.0) -> Support:
+def radial_bearings(mass: float, stiffness: float, damping: float = 0.0) -> Support:
     """Bearings of a gear that yield alike in all directions across its axis.
 
     Args:
@@ -104,7 +106,7 @@ def across(mass: float, stiffness: float, damping: float = 0.0) -> Support:
         damping: likewise [N s/m].
     """
     plane = jnp.eye(2)
-    return Support(as_array(mass), jnp.eye(3)[:2], stiffness * plane, damping * plane)
+    return Support(float64_array(mass), jnp.eye(3)[:2], stiffness * plane, damping * plane)
 
 
 def masses(bodies: Sequence[Body]) -> Float[Array, " coordinate"]:
@@ -119,12 +121,12 @@ def moved_masses(bodies: Sequence[Body]) -> Float[Array, " coordinate"]:
     return jnp.where(jnp.isinf(every), 0.0, every)
 
 
-def stiffness(bodies: Sequence[Body]) -> Matrix:
+def bearing_stiffness(bodies: Sequence[Body]) -> Matrix:
     """Stiffness of the bearings on all coordinates, K [N/m]."""
     return _assembled(bodies, [held.stiffness for _, held in _supports(bodies)])
 
 
-def damping(bodies: Sequence[Body]) -> Matrix:
+def bearing_damping(bodies: Sequence[Body]) -> Matrix:
     """Damping of the bearings on all coordinates, C [N s/m]."""
     return _assembled(bodies, [held.damping for _, held in _supports(bodies)])
 
@@ -142,7 +144,9 @@ def bearing_forces(
 
     From springs and dampers side by side.
     """
-    return jnp.tensordot(stiffness(bodies), place, 1) + jnp.tensordot(damping(bodies), rate, 1)
+    return jnp.tensordot(bearing_stiffness(bodies), place, 1) + jnp.tensordot(
+        bearing_damping(bodies), rate, 1
+    )
 
 
 def on_all_coordinates(

@@ -4,12 +4,12 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 
-__all__ = ["linear", "separating"]
+__all__ = ["linear_contact", "separating_contact"]
 
 Each = Float[Array, "*b"]
 
 
-def linear(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
+def linear_contact(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
     """Teeth never part: the force follows the stretch, pulling where it is negative.
 
     Args:
@@ -21,7 +21,7 @@ def linear(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
     return stretch, jnp.ones_like(stretch)
 
 
-def separating(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
+def separating_contact(stretch: Each, backlash: Float[Array, ""]) -> tuple[Each, Each]:
     """Teeth part where the stretch is negative, and meet their back flanks beyond the backlash.
 
     Args:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from pitchpoint.dynamics.response import Response
     from pitchpoint.dynamics.system import System
 
-__all__ = ["Account", "Energies", "energies", "relative_closure"]
+__all__ = ["Account", "Energies", "relative_closure", "vibration_energies"]
 
 Pairs = Float[Array, "pair element node"]
 Each = Float[Array, ""]
@@ -112,7 +112,7 @@ class Account(eqx.Module):
         return relative_closure(self.sum, jnp.stack(jax.tree.leaves(self)))
 
 
-def energies(system: "System", response: "Response") -> Energies:
+def vibration_energies(system: "System", response: "Response") -> Energies:
     """Work of everything that acts on the vibration in one period.
 
     The elastic energy of a pair is k d^2/2 with the stretch d, so its spring takes up F d' from the

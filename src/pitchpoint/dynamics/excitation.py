@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.gears.period import lobatto
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 
 __all__ = ["ErrorOrders", "Excitation", "ExcitationCourse"]
 
@@ -67,9 +67,9 @@ class ErrorOrders(eqx.Module):
         angle: of each order at phase zero [rad].
     """
 
-    amplitude: Float[Array, " order"] = eqx.field(converter=as_array)
-    order: Float[Array, " order"] = eqx.field(converter=as_array)
-    angle: Float[Array, " order"] = eqx.field(converter=as_array)
+    amplitude: Float[Array, " order"] = eqx.field(converter=float64_array)
+    order: Float[Array, " order"] = eqx.field(converter=float64_array)
+    angle: Float[Array, " order"] = eqx.field(converter=float64_array)
 
     def at(self, phase: Float[Array, "*b"]) -> Float[Array, "*b"]:
         """Error at a phase, counted on beyond one [m or rad]."""

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Complex, Float, Int
 
 from pitchpoint._jax import jnp
-from pitchpoint.gears.period import between, lobatto
+from pitchpoint.gears.period import lobatto, polynomial_matrices
 
 __all__ = ["PeriodGrid"]
 
@@ -108,14 +108,14 @@ class PeriodGrid:
 
         From Taylor's series to the third order about the point beside the vertex.
         """
-        dense = values @ between(self.nodes)[0]
+        dense = values @ polynomial_matrices(self.nodes)[0]
         flat = dense.reshape(*dense.shape[:-2], -1)
         low, high = (self._vertex(values, pick(flat, axis=-1)) for pick in (jnp.argmin, jnp.argmax))
         return jnp.minimum(low, jnp.min(flat, axis=-1)), jnp.maximum(high, jnp.max(flat, axis=-1))
 
     def _vertex(self, values: Values, where: Int[Array, "*b"]) -> Float[Array, "*b"]:
         """Value at the level point beside a point between the nodes, if there is one."""
-        *matrices, spacing = (jnp.asarray(matrix) for matrix in between(self.nodes))
+        *matrices, spacing = (jnp.asarray(matrix) for matrix in polynomial_matrices(self.nodes))
         element, point = jnp.divmod(where, spacing.shape[0])
         row = jnp.take_along_axis(values, element[..., None, None], axis=-2)[..., 0, :]
         at, slope, curve, third = (

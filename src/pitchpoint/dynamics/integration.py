@@ -9,10 +9,10 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import ExcitationCourse
-from pitchpoint.dynamics.maps import horner, identity, product
+from pitchpoint.dynamics.maps import horner, identity, matrix_product
 from pitchpoint.dynamics.registry import ContactLaw
 
-__all__ = ["Pieces", "by_steps", "pieces", "travel"]
+__all__ = ["Pieces", "by_steps", "interval_coefficients", "travel"]
 
 TOLERANCE = 1e-9
 """Largest estimated error of a step, of states of order one."""
@@ -53,7 +53,7 @@ def by_steps(
 
     def rate(time: Array, state: tuple[Array, Array], _: None) -> tuple[Array, Array]:
         place, speed = state
-        force = product(horner(stiffness, time), place) + product(damping, speed)
+        force = matrix_product(horner(stiffness, time), place) + matrix_product(damping, speed)
         driven = -force[:, -1] + horner(load, time)
         return half * speed, half * jnp.concatenate([-force[:, :-1], driven[:, None]], axis=1)
 
@@ -76,7 +76,9 @@ class Pieces(eqx.Module):
     half: Float[Array, " interval"]
 
 
-def pieces(equations: Equations, course: ExcitationCourse, period: Float[Array, ""]) -> Pieces:
+def interval_coefficients(
+    equations: Equations, course: ExcitationCourse, period: Float[Array, ""]
+) -> Pieces:
     """Coefficients of all intervals; `half` is proportional to the period."""
 
     def in_turn(values: Float[Array, "*b element node"]) -> Float[Array, "interval degree *b"]:

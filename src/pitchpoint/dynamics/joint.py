@@ -7,9 +7,9 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.system import reduced_mass
 from pitchpoint.factored import Arrays
 from pitchpoint.loading.wind_up_curve import WindUpCurve
-from pitchpoint.roots import root
+from pitchpoint.roots import find_root
 
-__all__ = ["Joint", "JointResponse", "Sliding", "respond"]
+__all__ = ["Joint", "JointResponse", "Sliding", "joint_response"]
 
 Each = Float[Arrays, "*#b"]
 One = Float[Arrays, ""]
@@ -96,7 +96,7 @@ class Joint(eqx.Module):
         beyond = jnp.maximum(torque - curve.torque[-1], 0.0) / curve.stiffness[-1]
         touch = jnp.maximum(jnp.asarray(curve.play), 0.0) / 2.0
         guess = touch + inside + beyond
-        solution, _ = root(lambda at: curve.torque_at(at) / torque - 1.0, guess, 4.0 * guess)
+        solution, _ = find_root(lambda at: curve.torque_at(at) / torque - 1.0, guess, 4.0 * guess)
         return jnp.where(loaded, solution, touch)
 
     @property
@@ -140,7 +140,7 @@ class JointResponse(eqx.Module):
         friction: torque over rate of the wind-up that stands for the friction of the flanks [N m s/rad].
         sticks: True where that friction holds the drive together.
 
-    From the equation of `respond`.
+    From the equation of `joint_response`.
     """
 
     frequency: Float[Array, "*b"]
@@ -152,7 +152,7 @@ class JointResponse(eqx.Module):
     sticks: Bool[Array, "*b"]
 
 
-def respond(joint: Joint, order: Each, amplitude: Each, speed: Each) -> JointResponse:
+def joint_response(joint: Joint, order: Each, amplitude: Each, speed: Each) -> JointResponse:
     """Steady vibration for small deviations from the constant torque, each wave of the error by itself.
 
     Args:
@@ -210,7 +210,7 @@ def _rate(
         both = jnp.abs(elastic * rate / frequency + 1j * (joint.damping * rate + friction))
         return both / jnp.where(moved > 0.0, moved, 1.0) - 1.0
 
-    share, _ = root(residual, jnp.ones_like(most), 1.0)
+    share, _ = find_root(residual, jnp.ones_like(most), 1.0)
     at_rest = jnp.where(jnp.asarray(joint.sliding.rate) == 0.0, joint.sliding.held, 0.0)
     moves = 4.0 / jnp.pi * jnp.sum(at_rest) < moved
     rate = jnp.where(moves, share * most, 0.0)

@@ -11,12 +11,19 @@ from jaxtyping import Array, Bool, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.energy import relative_closure
 from pitchpoint.dynamics.excitation import ErrorOrders
-from pitchpoint.dynamics.joint import Joint, respond
+from pitchpoint.dynamics.joint import Joint, joint_response
 from pitchpoint.factored import Arrays
 from pitchpoint.programs import looping_program, program
 from pitchpoint.status import Code, Status
 
-__all__ = ["JointCourse", "MotorRun", "SteadyVibration", "course", "fading", "settled"]
+__all__ = [
+    "JointCourse",
+    "MotorRun",
+    "SteadyVibration",
+    "fading",
+    "joint_motion",
+    "steady_joint_vibration",
+]
 
 CLOSED = 1e-8
 """Largest part of the energy that may be left over."""
@@ -144,7 +151,7 @@ class SteadyVibration(eqx.Module):
 
 
 @program
-def course(
+def joint_motion(
     joint: Joint,
     excitation: ErrorOrders,
     drive: MotorRun,
@@ -306,7 +313,7 @@ class _JointState(eqx.Module):
 
 
 @looping_program
-def settled(
+def steady_joint_vibration(
     joint: Joint, order: One, amplitude: One, speed: One, periods: Float[Arrays, ""]
 ) -> SteadyVibration:
     """Steady vibration by one wave of the error, from the linear one on.
@@ -318,7 +325,7 @@ def settled(
         speed: rate of the driver [rad/s].
         periods: of the wave until it is looked at, see `fading`.
     """
-    linear = respond(joint, order, amplitude, speed)
+    linear = joint_response(joint, order, amplitude, speed)
     period = 2.0 * jnp.pi / linear.frequency
     frequency = linear.frequency
     place, rate = jnp.real(linear.wind_up), jnp.real(1j * frequency * linear.wind_up)
@@ -326,7 +333,7 @@ def settled(
     sampled = period * (periods + jnp.linspace(0.0, 2.0, 2 * POINTS + 1))
     wave = ErrorOrders(*(jnp.reshape(value, 1) for value in (amplitude, order, jnp.zeros(()))))
     times = jnp.concatenate([jnp.zeros(1), sampled])
-    motion = course(joint, wave, MotorRun.steady(speed), times, start)
+    motion = joint_motion(joint, wave, MotorRun.steady(speed), times, start)
     return _settled(joint, wave, motion, speed)
 
 

@@ -16,8 +16,8 @@ __all__ = [
     "horner",
     "identity",
     "inverse_matrix",
+    "matrix_product",
     "on_last",
-    "product",
 ]
 
 Map: TypeAlias = Float[Array, "state state+1 *b"]
@@ -42,7 +42,7 @@ class Chain(eqx.Module):
     def states(self, start: Float[Array, " state"]) -> Float[Array, "state element node"]:
         """States at the nodes."""
         at = jnp.einsum("ijk,j->ik", self.before[:, :-1, :-1], start) + self.before[:, -1, :-1]
-        moved = product(self.within[:, :-1], at[:, None, :, None])[:, 0]
+        moved = matrix_product(self.within[:, :-1], at[:, None, :, None])[:, 0]
         return moved + self.within[:, -1]
 
 
@@ -63,7 +63,7 @@ def chain(maps: Float[Array, "state state+1 element interval"]) -> Chain:
     return Chain(jnp.moveaxis(within, 0, -1), before)
 
 
-def product(
+def matrix_product(
     left: Float[Array, "i j *#b"], right: Float[Array, "j k *#b"]
 ) -> Float[Array, "i k *b"]:
     """Matrix product with the batch last, where it runs along rows."""
@@ -75,7 +75,7 @@ def product(
 
 def compose(after: Map, before: Map) -> Map:
     """The map that does one after the other."""
-    return product(after[:, :-1], before) + on_last(after[:, -1], after.shape[1])
+    return matrix_product(after[:, :-1], before) + on_last(after[:, -1], after.shape[1])
 
 
 def inverse_matrix(matrix: Float[Array, "state state *b"]) -> Float[Array, "state state *b"]:

@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.bodies import damping, on_all_coordinates, stiffness
+from pitchpoint.dynamics.bodies import bearing_damping, bearing_stiffness, on_all_coordinates
 from pitchpoint.dynamics.right_hand_side import MovingMesh, contact_forces
 from pitchpoint.gears.period import nodes
 
@@ -39,7 +39,7 @@ def mean_stiffness(moving: MovingMesh) -> Matrix:
     )(of_mesh)
     normal, weighted = contacts.normal, springs * weight.ravel()[:, None, None]
     pushed = jnp.einsum("tps,taps,tbps->ab", weighted, normal, normal)
-    return pushed + stiffness(moving.bodies)
+    return pushed + bearing_stiffness(moving.bodies)
 
 
 def along_action(whole: Matrix, line: Float[Array, " dof"]) -> Float[Array, ""]:
@@ -78,7 +78,7 @@ def modes(moving: MovingMesh) -> Modes:
 
     From the eigenvectors of M^-1/2 K M^-1/2, and C and the parts of K in them.
     """
-    springs, bearings = mean_stiffness(moving), stiffness(moving.bodies)
+    springs, bearings = mean_stiffness(moving), bearing_stiffness(moving.bodies)
     root = jnp.where(jnp.isinf(moving.mass), 0.0, 1.0 / jnp.sqrt(moving.mass))
     square, vectors = jnp.linalg.eigh(root[:, None] * springs * root)
     turning = jnp.sqrt(jnp.maximum(square, 0.0))
@@ -100,5 +100,7 @@ def _damping(moving: MovingMesh, springs: Matrix) -> Matrix:
     """Of the bearings, of the contacts in proportion to their stiffness, and along the line of action."""
     still = jnp.zeros(moving.mass.shape[0])
     line = contact_forces(moving, still, still).line
-    of_contacts = moving.relaxation * (springs - stiffness(moving.bodies))
-    return damping(moving.bodies) + of_contacts + moving.mesh_damping * jnp.outer(line, line)
+    of_contacts = moving.relaxation * (springs - bearing_stiffness(moving.bodies))
+    return (
+        bearing_damping(moving.bodies) + of_contacts + moving.mesh_damping * jnp.outer(line, line)
+    )

@@ -40,10 +40,12 @@ class ContactLaw:
 
 CONTACT_LAWS = Registry(
     "contact law",
-    ContactLaw("linear", "teeth never part", "pitchpoint.dynamics.contact_law:linear", linear=True),
+    ContactLaw(
+        "linear", "teeth never part", "pitchpoint.dynamics.contact_law:linear_contact", linear=True
+    ),
     ContactLaw(
         "separating",
         "teeth may part, and meet their back flanks beyond the backlash",
-        "pitchpoint.dynamics.contact_law:separating",
+        "pitchpoint.dynamics.contact_law:separating_contact",
     ),
 )

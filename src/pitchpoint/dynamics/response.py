@@ -14,7 +14,7 @@ from pitchpoint.dynamics.registry import ContactLaw
 from pitchpoint.factored import Numbers
 from pitchpoint.status import Code, Status
 
-__all__ = ["Response", "respond"]
+__all__ = ["Response", "response_from_states"]
 
 UNRESOLVED = 1e-4
 """Highest Legendre coefficients of an element, relative to the largest displacement."""
@@ -126,7 +126,7 @@ class Response(eqx.Module):
         return parts * sides.reshape(-1, *(1 for _ in values.shape[:-2]))
 
 
-def respond(
+def response_from_states(
     course: ExcitationCourse,
     equations: Equations,
     law: ContactLaw,

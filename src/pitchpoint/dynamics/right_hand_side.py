@@ -7,11 +7,11 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.dynamics.bodies import (
     Body,
+    bearing_damping,
     bearing_forces,
-    damping,
     masses,
     moved_masses,
     on_all_coordinates,
@@ -321,7 +321,7 @@ def powers(
 
     From force times velocity wherever a force acts.
     """
-    held = jnp.tensordot(damping(moving.bodies), rate, 1)
+    held = jnp.tensordot(bearing_damping(moving.bodies), rate, 1)
     along_line = found.damped * jnp.sum(found.line * rate, axis=0)
     damped = total((found.force - found.elastic) * found.closing) + along_line
     return jnp.stack(
@@ -368,7 +368,7 @@ def _leaning(mesh: Mesh, contacts: Contacts) -> Lanes:
     if not has(mesh, line_of_action):
         return jnp.ones_like(contacts.gap)
     action = line_of_action(mesh)
-    return along(contacts.normal, action) / jnp.sum(action**2)
+    return contact_velocity(contacts.normal, action) / jnp.sum(action**2)
 
 
 def _on_mesh(arms: Float[Array, "dof pair slice *b"], contacts: Contacts) -> Array:

@@ -5,7 +5,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import ExcitationCourse
-from pitchpoint.dynamics.maps import Map, compose, identity, inverse_matrix, on_last, product
+from pitchpoint.dynamics.maps import Map, compose, identity, inverse_matrix, matrix_product, on_last
 
 __all__ = ["by_series"]
 
@@ -58,10 +58,10 @@ def by_series(
     def term(carry: Carry, at: tuple[Array, Array]) -> tuple[Carry, None]:
         places, speed, (extended, waiting) = carry
         scale = half / at[1]
-        force = product(damping, speed) - on_last(at[0], 2 * size + 1)
+        force = matrix_product(damping, speed) - on_last(at[0], 2 * size + 1)
         # A product of two series: as many earlier places count as the stiffness has powers.
         for power, before in zip(stiffness, places, strict=True):
-            force = force + product(power, before)
+            force = force + matrix_product(power, before)
         place, speed = scale * speed, -scale * force
         new_term = jnp.concatenate([place, speed])
         return ((place, *places[:-1]), speed, (waiting + new_term, extended)), None
@@ -80,4 +80,4 @@ def by_series(
 def _inverse(ahead: Map) -> Map:
     """The affine map that undoes another."""
     matrix = inverse_matrix(ahead[:, :-1])
-    return jnp.concatenate([matrix, -product(matrix, ahead[:, -1:])], axis=1)
+    return jnp.concatenate([matrix, -matrix_product(matrix, ahead[:, -1:])], axis=1)

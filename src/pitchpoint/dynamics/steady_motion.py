@@ -12,7 +12,12 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.dynamics.bodies import bearing_forces, damping, moved_masses, stiffness
+from pitchpoint.dynamics.bodies import (
+    bearing_damping,
+    bearing_forces,
+    bearing_stiffness,
+    moved_masses,
+)
 from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.floquet import STABLE, multipliers
 from pitchpoint.dynamics.grid import PeriodGrid
@@ -348,7 +353,11 @@ def _checked(moving: MovingMesh, speeds: Sequence[float] | np.ndarray, cycles: i
 
 
 def _check_damping(moving: MovingMesh) -> None:
-    dampers = [moving.relaxation, moving.mesh_damping, jnp.max(damping(moving.bodies), initial=0.0)]
+    dampers = [
+        moving.relaxation,
+        moving.mesh_damping,
+        jnp.max(bearing_damping(moving.bodies), initial=0.0),
+    ]
     if not any(float(damper) > 0.0 for damper in dampers):
         raise InputError(
             "nothing damps the vibration, so that it never becomes steady; give a relaxation time of the "
@@ -586,7 +595,7 @@ def _units(moving: MovingMesh) -> tuple[Array, Array, Array, Array]:
     Energy is what the torques and the error store in the stiffest springs.
     """
     assert moving.passage is not None
-    mass, held = moving.mass, jnp.diag(stiffness(moving.bodies))
+    mass, held = moving.mass, jnp.diag(bearing_stiffness(moving.bodies))
     springs = jnp.max(jnp.sum(moving.passage.stiffness[0], axis=(0, 1)))
     arms = jnp.max(jnp.abs(moving.passage.contacts.normal[0]), axis=(1, 2, 3))
     squares = moving.padded(springs * arms**2)
@@ -690,7 +699,7 @@ def _account(
     def flat(values: Values) -> Array:
         return values.reshape(*values.shape[:-2], -1)
 
-    held = jnp.tensordot(stiffness(moving.bodies), beside, 1)
+    held = jnp.tensordot(bearing_stiffness(moving.bodies), beside, 1)
     return Account(
         kinetic=flat(kinetic(moving, rate)),
         contacts=flat(forces.energy),

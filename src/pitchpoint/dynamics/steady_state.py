@@ -8,10 +8,10 @@ from pitchpoint._jax import jnp
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
 from pitchpoint.dynamics.grid import PeriodGrid
-from pitchpoint.dynamics.integration import pieces
+from pitchpoint.dynamics.integration import interval_coefficients
 from pitchpoint.dynamics.maps import Map, chain, inverse_matrix
 from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
-from pitchpoint.dynamics.response import Response, respond
+from pitchpoint.dynamics.response import Response, response_from_states
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.shooting import Shot, shoot
 from pitchpoint.dynamics.system import System
@@ -56,7 +56,7 @@ def steady_state(
     # Marching would take as many periods as the damping needs, and would not find what is unstable.
     start = inverse_matrix(jnp.eye(monodromy.shape[0]) - monodromy) @ reached
     residual = _distance(monodromy @ start + reached, start)
-    return respond(
+    return response_from_states(
         course,
         scaled,
         CONTACT_LAWS["linear"],
@@ -101,7 +101,7 @@ def separating_steady_state(
     course = excitation.on(grid or PeriodGrid())
     scaled = equations(system, course)
     begin = resting(scaled, course) if start is None else scaled_start(scaled, start)
-    intervals = pieces(scaled, course, system.period)
+    intervals = interval_coefficients(scaled, course, system.period)
     shot = shoot(scaled, intervals, law, jnp.asarray(backlash) / scaled.unit, begin)
     return respond_to(shot, course, scaled, law, jnp.asarray(backlash))
 
@@ -116,7 +116,9 @@ def respond_to(
     """Response of the motion that a search found."""
     states = shot.nodes(course.length.shape[0])
     orbit = states, shot.monodromy, shot.residual, shot.found
-    return respond(course, scaled, law, backlash, *orbit, iterations=shot.marched + shot.tries)
+    return response_from_states(
+        course, scaled, law, backlash, *orbit, iterations=shot.marched + shot.tries
+    )
 
 
 def resting(scaled: Equations, course: ExcitationCourse) -> State:

@@ -7,7 +7,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.dynamics.equations import equations
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import PeriodGrid
-from pitchpoint.dynamics.integration import pieces
+from pitchpoint.dynamics.integration import interval_coefficients
 from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.shooting import shoot
@@ -50,7 +50,7 @@ def speed_sweep(
     law = law or CONTACT_LAWS["separating"]
     course = excitation.on(grid or PeriodGrid())
     scaled = equations(system, course)
-    unit = pieces(scaled, course, jnp.asarray(1.0))
+    unit = interval_coefficients(scaled, course, jnp.asarray(1.0))
     free = jnp.asarray(backlash) / scaled.unit
 
     def at(

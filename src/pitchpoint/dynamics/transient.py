@@ -11,7 +11,7 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body, Support, moved_masses, stiffness
+from pitchpoint.dynamics.bodies import Body, Support, bearing_stiffness, moved_masses
 from pitchpoint.dynamics.energy import Account
 from pitchpoint.dynamics.right_hand_side import (
     WORKS,
@@ -302,7 +302,7 @@ class _StateScale:
     """
 
     def __init__(self, moving: MovingMesh, times: Array, place: Vector, rate: Vector) -> None:
-        mass, held = moving.mass, stiffness(moving.bodies)
+        mass, held = moving.mass, bearing_stiffness(moving.bodies)
         forces = contact_forces(moving, place, rate)
         pushed = forces.stiffness * forces.contacts.normal**2
         stiff = jnp.max((jnp.diag(held) + jnp.sum(pushed, axis=(1, 2))) / mass)
@@ -398,7 +398,7 @@ def _described(
     account = Account(
         kinetic=kinetic(moving, rate),
         contacts=forces.energy,
-        bearings=jnp.sum(place * (stiffness(moving.bodies) @ place), axis=0) / 2.0,
+        bearings=jnp.sum(place * (bearing_stiffness(moving.bodies) @ place), axis=0) / 2.0,
         **dict(zip(WORKS, works, strict=True)),
     )
     status = Status(_code(reached, account.closure), account.closure, steps)

@@ -17,7 +17,7 @@ from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.remembered import remembering
 from pitchpoint.loading.reactions import Bearing, InnerBearing
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 
 __all__ = ["Drag", "at_rest", "bearing_loads", "drags", "held_by", "resistance"]
 
@@ -29,7 +29,7 @@ ROUNDING = 1e-13
 
 
 def _as_arrays(values: Mapping[str, Any]) -> dict[str, Float[Array, ""]]:
-    return {name: as_array(value) for name, value in values.items()}
+    return {name: float64_array(value) for name, value in values.items()}
 
 
 def _check_factors(model: DragModel, factors: Mapping[str, Any]) -> None:
@@ -66,17 +66,17 @@ class Drag(eqx.Module):
     Source: ISO/TR 14179-2:2001, losses of bearings, seals and churning add up.
     """
 
-    between: Float[Array, " dof"] = eqx.field(converter=as_array)
+    between: Float[Array, " dof"] = eqx.field(converter=float64_array)
     bearing: DragModel = eqx.field(static=True, default=BEARING_LOSS["none"])
-    mean_diameter: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    mean_diameter: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
     factors: Mapping[str, Float[Array, ""]] = eqx.field(converter=_as_arrays, default_factory=dict)
-    preload: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    preload: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
     seat: Bearing | InnerBearing | None = None
-    seal_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
-    churning_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
-    churning_speed: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
-    churning_exponent: Float[Array, ""] = eqx.field(converter=as_array, default=1.0)
-    breakaway_torque: Float[Array, ""] = eqx.field(converter=as_array, default=0.0)
+    seal_torque: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
+    churning_torque: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
+    churning_speed: Float[Array, ""] = eqx.field(converter=float64_array, default=1.0)
+    churning_exponent: Float[Array, ""] = eqx.field(converter=float64_array, default=1.0)
+    breakaway_torque: Float[Array, ""] = eqx.field(converter=float64_array, default=0.0)
     breakaway: DragModel = eqx.field(static=True, default=BREAKAWAY["none"])
     breakaway_factors: Mapping[str, Float[Array, ""]] = eqx.field(
         converter=_as_arrays, default_factory=dict

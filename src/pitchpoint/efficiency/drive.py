@@ -38,11 +38,11 @@ __all__ = [
     "LinkPlace",
     "Locking",
     "UnderLoad",
+    "bearings_feel_link_behind",
     "chained",
     "drive_cycle",
-    "felt",
-    "overcome",
-    "owner",
+    "loss_owner",
+    "overcome_losses",
 ]
 
 Each = Float[Array, "*#b"]
@@ -208,7 +208,7 @@ def chained(links: Sequence[DriveLink], drag: Sequence[Drag] = ()) -> Drive:
                 f"{before[1] + 1}"
             )
     _check_senses(links)
-    owners = tuple(owner(place, links) for place in drag)
+    owners = tuple(loss_owner(place, links) for place in drag)
     braked = tuple(_braked_shafts(place) for place in drag)
     return Drive(tuple(links), tuple(drag), tuple(ends), owners, braked)
 
@@ -230,7 +230,7 @@ def _braked_shafts(drag: Drag) -> tuple[int, ...]:
     return tuple(int(shaft) for shaft in np.flatnonzero(np.asarray(drag.between)))
 
 
-def owner(drag: Drag, links: Sequence[DriveLink]) -> int:
+def loss_owner(drag: Drag, links: Sequence[DriveLink]) -> int:
     """Number of the link that overcomes a loss, see `Drive.owners`.
 
     Args:
@@ -251,12 +251,12 @@ def owner(drag: Drag, links: Sequence[DriveLink]) -> int:
     return (loading or having)[0]
 
 
-def overcome(drive: Drive, number: int) -> list[int]:
+def overcome_losses(drive: Drive, number: int) -> list[int]:
     """Places of a drive whose losses a link overcomes, by their numbers."""
     return [place for place, link in enumerate(drive.owners) if link == number]
 
 
-def felt(drive: Drive, number: int, place: int | None = None) -> bool:
+def bearings_feel_link_behind(drive: Drive, number: int, place: int | None = None) -> bool:
     """True if bearings that a link overcomes feel the teeth of the link behind it too; none do of trains.
 
     Args:
@@ -265,7 +265,10 @@ def felt(drive: Drive, number: int, place: int | None = None) -> bool:
         place: a bearing of the drive; by default any that the link overcomes.
     """
     if place is None:
-        return any(felt(drive, number, loss_place) for loss_place in overcome(drive, number))
+        return any(
+            bearings_feel_link_behind(drive, number, loss_place)
+            for loss_place in overcome_losses(drive, number)
+        )
     seat = drive.drag[place].seat
     return (
         isinstance(seat, Bearing)
@@ -457,7 +460,7 @@ def drive_cycle(
         few: odd number of loads of a link that stand for all meetings of phases behind it; None for each
             meeting by itself, of which there are as many as the product of the nodes of all links.
 
-    From the balance of torques on every shaft, see `balance`.
+    From the balance of torques on every shaft, see `force_balance`.
     """
     demand_double()
     if len(models) != len(drive.links):
@@ -485,7 +488,7 @@ def drive_cycle(
         load = loaded.state.input_torque
         if number > 0:
             often = every[0].weight[..., None] * loaded.weight
-            feels_behind, felt_too = felt(drive, number - 1), 1 + every[0].kept
+            feels_behind, felt_too = bearings_feel_link_behind(drive, number - 1), 1 + every[0].kept
             of_phases = counts[:felt_too], smooth[number : number + felt_too]
             if feels_behind:
                 of_phases = of_phases[0][1:], of_phases[1][1:]

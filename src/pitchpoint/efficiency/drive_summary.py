@@ -14,8 +14,8 @@ from pitchpoint.efficiency.drive import (
     DriveCycle,
     LinkModels,
     Locking,
+    bearings_feel_link_behind,
     drive_cycle,
-    felt,
 )
 from pitchpoint.efficiency.meetings import FEW, Meetings, among_few, few_between
 from pitchpoint.efficiency.quasi_static import (
@@ -31,7 +31,7 @@ from pitchpoint.programs import program
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train_state import TrainState
 
-__all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "together"]
+__all__ = ["drive_figures", "drive_nodes", "mean_friction_of_drive", "points_per_batch"]
 
 MOST_BYTES = 4e8
 """Memory that the states of one chunk of points may take [B]."""
@@ -49,7 +49,7 @@ def drive_nodes(links: int) -> int:
     return NODES if links == 1 else NODES // 2
 
 
-def together(drive: Drive, models: Sequence[LinkModels]) -> int:
+def points_per_batch(drive: Drive, models: Sequence[LinkModels]) -> int:
     """Points that are computed together, so that memory suffices.
 
     Args:
@@ -76,7 +76,7 @@ def _memory(drive: Drive, models: Sequence[LinkModels], nodes: int) -> float:
     for number in reversed(range(len(drive.links))):
         per_load, phases = drive.links[number].memory(models[number], nodes)
         needed += loads * per_load
-        loads = phases * min(loads, FEW) if felt(drive, number - 1) else FEW
+        loads = phases * min(loads, FEW) if bearings_feel_link_behind(drive, number - 1) else FEW
     return needed
 
 
@@ -96,7 +96,7 @@ def drive_figures(
     """
     parts: list[dict[str, np.ndarray]] = []
     done = 0
-    size = together(points[0][0], models)
+    size = points_per_batch(points[0][0], models)
     for drive, operations in _of_one_drive(points, models):
         for start in range(0, len(operations), size):
             some = operations[start : start + size]

@@ -9,7 +9,13 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.drag import Drag, bearing_loads
-from pitchpoint.efficiency.drive import DriveLink, LinkPlace, UnderLoad, felt, overcome
+from pitchpoint.efficiency.drive import (
+    DriveLink,
+    LinkPlace,
+    UnderLoad,
+    bearings_feel_link_behind,
+    overcome_losses,
+)
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -121,11 +127,15 @@ class MeshLink(DriveLink):
     def _braked(self, place: LinkPlace) -> tuple[Drag, ...]:
         """Losses of the drive that it overcomes, in its coordinates, then its own."""
         drags = []
-        for number in overcome(place.drive, place.number):
+        for number in overcome_losses(place.drive, place.number):
             drag = place.drive.drag[number]
             seat = drag.seat
             if isinstance(seat, Bearing):
-                beside = self._beside(seat, place) if felt(*place[:2], number) else None
+                beside = (
+                    self._beside(seat, place)
+                    if bearings_feel_link_behind(*place[:2], number)
+                    else None
+                )
                 seat = replace(self._seated(seat), beside=beside)
             between = jnp.stack([drag.between[shaft] for shaft in self.shafts])
             drags.append(replace(drag, between=between, seat=seat))

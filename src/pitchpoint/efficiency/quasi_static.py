@@ -11,11 +11,11 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, demand_double, jax, jnp
 from pitchpoint.brief import brief
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers, as_array
+from pitchpoint.factored import Arrays, Numbers, product_array
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.coordinates import number_of
 from pitchpoint.gears.gear_body import GearBody
@@ -30,9 +30,9 @@ from pitchpoint.gears.nominal_motion import (
 )
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.pairs import touching
-from pitchpoint.gears.period import between
 from pitchpoint.gears.period import nodes as period_nodes
-from pitchpoint.loading.balance import Balance, balance, first_guess, tooth_load
+from pitchpoint.gears.period import polynomial_matrices
+from pitchpoint.loading.balance import Balance, first_guess, force_balance, tooth_load
 from pitchpoint.loading.balance import Drag as TorqueOnBodies
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.registry import LoadSharing
@@ -54,7 +54,6 @@ __all__ = [
     "Models",
     "Operation",
     "State",
-    "balanced",
     "contacts_at",
     "coupling",
     "cycle",
@@ -64,6 +63,7 @@ __all__ = [
     "engagement_alone",
     "events_of",
     "extremes",
+    "forces_at_nodes",
     "power_ratio",
     "shares_at",
     "state",
@@ -194,8 +194,8 @@ class Design(eqx.Module):
             contacts=contacts,
             load=load,
             nominal_load=nominal_load,
-            slip=along(contacts.slip_arm, motion),
-            roll=along(contacts.roll_arm, motion),
+            slip=contact_velocity(contacts.slip_arm, motion),
+            roll=contact_velocity(contacts.roll_arm, motion),
             speed=operation.speed,
             modulus=self.modulus,
             temperature=temperature,
@@ -285,7 +285,7 @@ class Models(eqx.Module):
         return replace(
             self,
             friction=(),
-            choice=as_array(np.array(0)),  # one of JAX might belong to whatever is traced now
+            choice=product_array(np.array(0)),  # one of JAX might belong to whatever is traced now
             parameters={},
             held=None,
             held_rolling=None,
@@ -582,7 +582,7 @@ def state(
             takes; check the residual then.
         engaged: contacts and shares at these phases, where they are known already.
 
-    Source: Tian et al. (2024), eqs. 1, 2, 5 and 16; see `balance`.
+    Source: Tian et al. (2024), eqs. 1, 2, 5 and 16; see `force_balance`.
     """
     demand_double()
     rank = max(jnp.ndim(x) for x in (phase, *jax.tree.leaves(operation)))
@@ -604,7 +604,7 @@ def _unloaded(design: Design, operation: Operation, contacts: Contacts, share: L
     oil, temperature = design.lubricant, operation.temperature
     drag = _drag(design, operation, contacts, oil.kinematic_viscosity(temperature))
     carried = tooth_load(contacts, loaded=design.loaded, load=operation.load, drag=drag)
-    arm = jnp.abs(total(share * along(contacts.normal, design.loaded)))
+    arm = jnp.abs(total(share * contact_velocity(contacts.normal, design.loaded)))
     return design.conditions(
         contacts, operation, load=jnp.zeros_like(share), nominal_load=carried / arm
     )
@@ -625,7 +625,7 @@ def _balance(
     if quick:
         single = jax.tree.map(_single, problem)
         guess = jnp.asarray(first_guess(**_in_balance(single, models)), jnp.float64)
-    return balance(**_in_balance(problem, models), guess=guess)
+    return force_balance(**_in_balance(problem, models), guess=guess)
 
 
 def _state(design: Design, operation: Operation, unloaded: Conditions, forces: Balance) -> State:
@@ -637,12 +637,12 @@ def _state(design: Design, operation: Operation, unloaded: Conditions, forces: B
         contacts=unloaded.contacts,
         conditions=at_contact,
         balance=forces,
-        sliding_loss=forces.load * forces.friction * as_array(at_contact.sliding),
-        rolling_loss=2.0 * forces.rolling * as_array(at_contact.entrainment),
-        drag_loss=along(forces.drag, motion) * operation.speed,
-        input_torque=along(forces.torque, driver),
-        input_power=along(forces.torque, putting) * operation.speed,
-        output_power=-along(forces.torque, taking) * operation.speed,
+        sliding_loss=forces.load * forces.friction * product_array(at_contact.sliding),
+        rolling_loss=2.0 * forces.rolling * product_array(at_contact.entrainment),
+        drag_loss=contact_velocity(forces.drag, motion) * operation.speed,
+        input_torque=contact_velocity(forces.torque, driver),
+        input_power=contact_velocity(forces.torque, putting) * operation.speed,
+        output_power=-contact_velocity(forces.torque, taking) * operation.speed,
     )
 
 
@@ -833,7 +833,7 @@ def _ends(values: Float[Array, "*b node"], nodes: int, smooth: bool) -> tuple[Ea
     if not smooth:
         return jnp.min(values, axis=-1), jnp.max(values, axis=-1)
     segments = values.reshape(*values.shape[:-1], -1, nodes)
-    at, *derivatives, spacing = between(nodes)
+    at, *derivatives, spacing = polynomial_matrices(nodes)
     dense, slope, curve, third = (segments @ matrix for matrix in (at, *derivatives))
     # A vertex farther off than the next point is told there, by derivatives that are nearer to it.
     level = jnp.abs(slope) < jnp.abs(curve) * spacing
@@ -870,7 +870,9 @@ def cycle(
     return Cycle(phase, weight, mesh_states, nodes, smooth=touching(design.mesh))
 
 
-def balanced(design: Design, operation: Operation, known: Engagement, models: Models) -> Balance:
+def forces_at_nodes(
+    design: Design, operation: Operation, known: Engagement, models: Models
+) -> Balance:
     """Forces at the nodes of a cycle whose contacts and shares are known; only they ask for the law.
 
     Args:
@@ -885,7 +887,7 @@ def balanced(design: Design, operation: Operation, known: Engagement, models: Mo
 
 
 def cycle_of(design: Design, operation: Operation, known: Engagement, found: Balance) -> Cycle:
-    """The cycle that belongs to such forces; arguments as in `balanced`."""
+    """The cycle that belongs to such forces; arguments as in `forces_at_nodes`."""
     points = _at_nodes(operation)
     unloaded = _unloaded(design, points, known.contacts, known.share)
     states = _state(design, points, unloaded, found)

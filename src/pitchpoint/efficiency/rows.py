@@ -17,8 +17,8 @@ from pitchpoint.efficiency.quasi_static import (
     Engagement,
     Models,
     Operation,
-    balanced,
     engagement_alone,
+    forces_at_nodes,
 )
 from pitchpoint.factored import Arrays
 from pitchpoint.loading.balance import Balance
@@ -29,10 +29,10 @@ __all__ = [
     "NODES",
     "Row",
     "balance_in_rows",
-    "balances",
     "balances_of",
-    "known_engagements",
     "one_engagement",
+    "remembered_engagements",
+    "row_balances",
     "stacked",
 ]
 
@@ -54,7 +54,9 @@ def engagements(designs: Design, load: Float[Array, " row"], models: Models) -> 
     return engagement
 
 
-def known_engagements(designs: Design, load: Float[Arrays, " row"], models: Models) -> Engagement:
+def remembered_engagements(
+    designs: Design, load: Float[Arrays, " row"], models: Models
+) -> Engagement:
     """The same as `engagements`, found once for rows that are asked for again, as under other laws."""
     inputs = designs, models, load if models.sharing.by_stiffness else None
     leaves, structure = jax.tree.flatten(inputs)
@@ -77,17 +79,17 @@ one_engagement = program(engagement_alone)
 
 
 @program
-def balances(rows: Row, models: Models) -> Balance:
+def row_balances(rows: Row, models: Models) -> Balance:
     """Balance of every row."""
     forces: Balance = eqx.filter_vmap(
-        lambda design, operation, known: balanced(design, operation, known, models)
+        lambda design, operation, known: forces_at_nodes(design, operation, known, models)
     )(*rows)
     return forces
 
 
 def balances_of(rows: Row, models: Models) -> Balance:
     """Balance of every row; no balance asks for the law of the film, and one program serves them all."""
-    return balances(rows, models.without_film)
+    return row_balances(rows, models.without_film)
 
 
 def stacked(rows: list[Any]) -> Any:
@@ -110,7 +112,7 @@ def _stack(first: Any, *others: Any) -> np.ndarray:
 def balance_in_rows(
     design: Design, operation: Operation, known: Engagement, models: Models
 ) -> Balance:
-    """Balance of one cycle, by the program of `balances`; a cycle of more nodes takes several rows."""
+    """Balance of one cycle, by the program of `row_balances`; a cycle of more nodes takes several rows."""
     count = known.nodes // NODES if known.nodes % NODES == 0 else 1
     parts = [_part(known, number, count) for number in range(count)]
     rows = [(design, operation, part) for part in parts]

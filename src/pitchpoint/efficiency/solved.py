@@ -9,8 +9,8 @@ from jaxtyping import Array
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation, cycle
 from pitchpoint.errors import InputError
-from pitchpoint.factored import as_array
-from pitchpoint.lubrication.conditions import Conditions, arguments, demand_shape
+from pitchpoint.factored import product_array
+from pitchpoint.lubrication.conditions import Conditions, demand_shape, law_arguments
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
@@ -66,7 +66,7 @@ def solved_cycle(
 
     Source: Tian et al. (2024), eq. 17: force and coefficient in turns until they agree.
     """
-    wanted, _ = arguments(solver)
+    wanted, _ = law_arguments(solver)
     demand_shape(solver, design.mesh.shape)
     mesh_cycle, at = _turn(design, operation, models, engaged, tuple(wanted))
     held, change, turns = _first(mesh_cycle, models), np.inf, 0
@@ -146,6 +146,6 @@ def _cycle(
     mesh_cycle = cycle(design, operation, models, engaged=engaged)
     at: Conditions = mesh_cycle.state.conditions
     carries = mesh_cycle.state.contacts.active & (mesh_cycle.state.balance.load > 0.0)
-    conditions = {name: as_array(getattr(at, name)) for name in wanted}
+    conditions = {name: product_array(getattr(at, name)) for name in wanted}
     code = jnp.max(mesh_cycle.state.balance.status.code)
     return mesh_cycle, {"carries": carries, "code": code, **conditions}

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.contact.contacts import along, total
+from pitchpoint.contact.contacts import contact_velocity, total
 from pitchpoint.efficiency.drag import bearing_loads
 from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
@@ -30,8 +30,8 @@ from pitchpoint.efficiency.rows import (
     NODES,
     Row,
     balances_of,
-    known_engagements,
     one_engagement,
+    remembered_engagements,
     stacked,
 )
 from pitchpoint.gears.bodies import main_dimensions
@@ -50,16 +50,16 @@ if TYPE_CHECKING:
 
 __all__ = [
     "at_points",
+    "cycle_summary",
     "engaged",
     "groups_alike",
-    "heat",
+    "joined_parts",
     "loss_factor",
     "mean_friction",
     "of_stacks",
     "stacks",
     "summarise",
-    "summary",
-    "whole_of",
+    "tooth_heat_figures",
 ]
 
 
@@ -88,15 +88,15 @@ def loss_factor(design: Design, models: Models, engaged: Engagement | None = Non
         share = equal(contacts, mesh)
     else:
         weight, contacts, share = engaged.weight, engaged.contacts, engaged.share
-    sliding = jnp.abs(along(contacts.slip_arm, design.motion))
-    arm = jnp.abs(along(contacts.normal, design.driver))
+    sliding = jnp.abs(contact_velocity(contacts.slip_arm, design.motion))
+    arm = jnp.abs(contact_velocity(contacts.normal, design.driver))
     presses = jnp.any(arm > 0.0)
     return jnp.where(
         presses, total(share * sliding / jnp.where(presses, arm, 1.0)) @ weight, jnp.nan
     )
 
 
-def summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
+def cycle_summary(design: Design, result: Cycle, factor: Array) -> dict[str, Array]:
     """Figures of one cycle; powers in W, torques in N m, the rest dimensionless.
 
     Args:
@@ -209,7 +209,7 @@ def _by_gear(values: Mapping[str, Array]) -> dict[str, Array]:
 
 
 @program
-def heat(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
+def tooth_heat_figures(design: Design, operation: Operation, models: Models) -> dict[str, Array]:
     """Mean friction coefficient and loss factor at one operating point: what heats the teeth."""
     mesh_cycle = cycle(design, operation, models, nodes=6)
     return {
@@ -254,7 +254,7 @@ def at_points(design: Design, operation: Operation, models: Models) -> dict[str,
         models: laws.
     """
     alone, designs = models.without_friction, stacked([design] * CHUNK)
-    meshing = known_engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
+    meshing = remembered_engagements(designs, array(np.resize(operation.load, CHUNK)), alone)
     count = operation.load.shape[0]
 
     def some(start: int) -> dict[str, np.ndarray]:
@@ -273,7 +273,7 @@ def _figures(chunk: Prepared, models: Models) -> dict[str, Array]:
     design, operation, meshing = chunk
     alone = models.without_friction
     if meshing is None:
-        meshing = known_engagements(design, operation.load, alone)
+        meshing = remembered_engagements(design, operation.load, alone)
     rows = design, operation, meshing
     return _summaries(rows, balances_of(rows, models), alone, models.film)
 
@@ -398,7 +398,7 @@ def stacks(
 
 def of_stacks(results: Iterable[tuple[Mapping[str, Any], int]]) -> dict[str, np.ndarray]:
     """Results of stacks, each quantity [point ...] and how many points count, as those of all points."""
-    return whole_of(
+    return joined_parts(
         [
             {name: np.asarray(values)[:used] for name, values in figures.items()}
             for figures, used in results
@@ -415,7 +415,7 @@ def groups_alike(trees: Iterable[Any]) -> list[list[int]]:
     return [*groups.values()]
 
 
-def whole_of(
+def joined_parts(
     parts: Sequence[Mapping[str, np.ndarray]], groups: Sequence[Sequence[int]] = ()
 ) -> dict[str, np.ndarray]:
     """Results of several parts as those of the whole, each quantity [point ...].
@@ -429,7 +429,7 @@ def whole_of(
         >>> from pitchpoint.efficiency.summary import groups_alike
         >>> groups = groups_alike([np.zeros(2), np.zeros(3), np.ones(2)])
         >>> parts = [{"loss": np.array([1.0, 3.0])}, {"loss": np.array([2.0])}]
-        >>> groups, whole_of(parts, groups)["loss"].tolist()
+        >>> groups, joined_parts(parts, groups)["loss"].tolist()
         ([[0, 2], [1]], [1.0, 2.0, 3.0])
     """
     if len(parts) == 1:
@@ -447,7 +447,7 @@ def _summaries(
     ) -> dict[str, Array]:
         factor = loss_factor(design, models, None if touching(design.mesh) else meshing)
         result = cycle_of(design, operation, meshing, balance)
-        return summary(design, result, factor) | _extremes(result, film)
+        return cycle_summary(design, result, factor) | _extremes(result, film)
 
     result: dict[str, Array] = eqx.filter_vmap(one)(*rows, balances)
     return result

@@ -10,14 +10,14 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import demand_double, jax, jnp
 from pitchpoint.brief import brief
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import ROUNDING as NO_TURNING
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, extremes, power_ratio
 from pitchpoint.efficiency.train import Train, TrainMesh
-from pitchpoint.factored import as_array, root
-from pitchpoint.gears.period import apart
+from pitchpoint.factored import product_array, square_root
 from pitchpoint.gears.period import nodes as period_nodes
+from pitchpoint.gears.period import phases_past_ties
 from pitchpoint.loading.balance import UNSOLVED
 from pitchpoint.lubrication.conditions import Conditions, evaluate
 from pitchpoint.programs import program
@@ -221,7 +221,7 @@ def train_cycle(
     """
     demand_double()
     phase, weight = period_nodes(jnp.concatenate([*_events(train, models)]), nodes)
-    phase, weight = apart(phase, weight).ravel() / train.turns, weight.ravel()
+    phase, weight = phases_past_ties(phase, weight).ravel() / train.turns, weight.ravel()
     every = [
         _Meshing(train, mesh, operation, laws, phase)
         for mesh, laws in zip(train.meshes, models, strict=True)
@@ -296,12 +296,15 @@ class _Meshing:
             mesh.carried / mesh.count * operation.load, speed, operation.temperature
         )
         self.share = models.share(design, self.contacts, self.operation.load)
-        arm = jnp.abs(total(self.share * along(self.contacts.normal, design.loaded)))
+        arm = jnp.abs(total(self.share * contact_velocity(self.contacts.normal, design.loaded)))
         self.rates = motion * operation.speed
         self.carry(self.operation.load / arm)
         self.either: Bool[Array, "..."] = jnp.asarray(bool(train.drag))
         self.idle: Bool[Array, "..."] = jnp.asarray(False)
-        slip, roll = along(self.contacts.slip_arm, motion), along(self.contacts.roll_arm, motion)
+        slip, roll = (
+            contact_velocity(self.contacts.slip_arm, motion),
+            contact_velocity(self.contacts.roll_arm, motion),
+        )
         # Beside the pitch point by rounding, a contact does not slide.
         self.sense = jnp.where(jnp.abs(slip) > 1e-13 * jnp.abs(roll), jnp.sign(slip), 0.0)
         self.turn = jnp.sign(roll)
@@ -392,8 +395,8 @@ class _Meshing:
         return MeshState(
             at,
             coefficient,
-            at.load * coefficient * as_array(at.sliding),
-            2.0 * resistance * as_array(at.entrainment),
+            at.load * coefficient * product_array(at.sliding),
+            2.0 * resistance * product_array(at.entrainment),
             force,
             jnp.where(self.idle, 0.0, self.nominal),
             driver,
@@ -709,7 +712,7 @@ def _around(vectors: Vectors, angles: Float[Array, " copy"]) -> Float[Array, "3 
 
 
 def _size(vector: Float[Array, "3 _ node"]) -> OfPlanets:
-    size: OfPlanets = root(jnp.sum(vector**2, axis=0))
+    size: OfPlanets = square_root(jnp.sum(vector**2, axis=0))
     return size
 
 

@@ -9,7 +9,14 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.drive.kinematics import HOUSING
-from pitchpoint.efficiency.drive import MET, DriveLink, LinkPlace, Locking, UnderLoad, overcome
+from pitchpoint.efficiency.drive import (
+    MET,
+    DriveLink,
+    LinkPlace,
+    Locking,
+    UnderLoad,
+    overcome_losses,
+)
 from pitchpoint.efficiency.quasi_static import Engagement, Models, Operation
 from pitchpoint.efficiency.train import Train
 from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, TrainCycle, train_cycle
@@ -193,7 +200,7 @@ class TrainLink(DriveLink):
         train, drive = self.design, place.drive
         names = dict(zip(self.shafts, (train.turned, train.loaded), strict=True))
         drags, pairs = [], []
-        for number in overcome(drive, place.number):
+        for number in overcome_losses(drive, place.number):
             drag, shafts = drive.drag[number], drive.braked[number]
             body, against = *(names[shaft] for shaft in shafts), *[HOUSING] * (2 - len(shafts))
             sides = drag.between[shafts[0]] * jnp.array([1.0, -1.0])

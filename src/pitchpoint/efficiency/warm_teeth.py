@@ -9,13 +9,13 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.efficiency.summary import heat
+from pitchpoint.efficiency.summary import tooth_heat_figures
 from pitchpoint.efficiency.tooth_temperature import ToothTemperature
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
 
-__all__ = ["ToothHeating", "WarmTeeth", "balance", "warm_teeth"]
+__all__ = ["ToothHeating", "WarmTeeth", "warm_teeth", "warm_teeth_program"]
 
 TOLERANCE = 1e-11
 """Relative change of the temperatures of a pass at which they are in balance."""
@@ -77,7 +77,7 @@ class WarmTeeth(eqx.Module):
 
 
 @program
-def balance(
+def warm_teeth_program(
     design: Design, operation: Operation, models: Models, heated: ToothHeating
 ) -> WarmTeeth:
     """`warm_teeth` as a program that is kept."""
@@ -126,7 +126,7 @@ def _loss(at: Float[Array, "2"], inputs: Given) -> Float[Array, "2"]:
     design, operation, models, heated = inputs
     young = _moduli(_temperatures(at, design, operation, heated).root, heated)
     pinion, gear = (replace(solid, young=young[k]) for k, solid in enumerate(design.solids))
-    losses = heat(replace(design, solids=(pinion, gear)), operation, models)
+    losses = tooth_heat_figures(replace(design, solids=(pinion, gear)), operation, models)
     return jnp.stack([losses["mean_friction"], losses["loss_factor"]])
 
 

@@ -20,14 +20,14 @@ from pitchpoint.runs.run import Outcome
 
 __all__ = [
     "SIGNS",
-    "behind",
-    "demand_room",
+    "comment_text",
+    "demand_small_table",
     "evaluator",
     "header",
-    "inert",
     "map_code",
     "module",
     "module_head",
+    "source_after_statements",
 ]
 
 MOST = 500_000
@@ -87,13 +87,13 @@ def evaluator(outcome: Outcome, folder: Path) -> list[Path]:
             f"the {FOUR_QUADRANTS.title} is not as this version writes it; run the case again"
         )
         raise InputError(sentence, key="--evaluator") from None
-    demand_room(table, "--evaluator")
+    demand_small_table(table, "--evaluator")
     for name, text in texts.items():
         write_text(folder / name, text)
     return [folder / name for name in texts]
 
 
-def demand_room(table: LossTable, key: str) -> None:
+def demand_small_table(table: LossTable, key: str) -> None:
     """InputError at a key unless a table fits into a file of source."""
     axes = table.loss_torques, table.torques, table.speeds, table.temperatures
     points = math.prod(map(len, axes))
@@ -146,7 +146,7 @@ def map_code(outcome: Outcome, table: LossTable, names: Sequence[str]) -> str:
         names: that the module is for.
     """
     source = files("pitchpoint.efficiency").joinpath("loss_table.py").read_text("utf-8")
-    code = behind(source, 1)
+    code = source_after_statements(source, 1)
     public = "".join(f'"{name}", ' for name in names).removesuffix(", ")
     code = re.sub(r"^__all__ = .*$", f"__all__ = [{public}]", code, count=1, flags=re.M)
     about = ", ".join(f"{key!a}: {text!a}" for key, text in _origin(outcome).items())
@@ -160,7 +160,7 @@ def map_code(outcome: Outcome, table: LossTable, names: Sequence[str]) -> str:
     )
 
 
-def behind(source: str, count: int) -> str:
+def source_after_statements(source: str, count: int) -> str:
     """Source behind so many of its first statements."""
     end_line = ast.parse(source).body[count - 1].end_lineno
     return "".join(source.splitlines(keepends=True)[end_line:])
@@ -185,7 +185,7 @@ def header(outcome: Outcome, table: LossTable) -> str:
         "\n * ".join(wrap(text, 100)) for text in (*_told(outcome, table), usage)
     )
     sizes = "".join(f"#define LOSS_TABLE_{n} {k}\n" for n, k in zip(names, shape, strict=True))
-    driver = inert(table.units[-1])
+    driver = comment_text(table.units[-1])
     usual = {
         law: [[column[0] for column in values]] * 2 for law, values in table.loss_torques.items()
     }
@@ -219,7 +219,7 @@ def header(outcome: Outcome, table: LossTable) -> str:
 
 def _told(outcome: Outcome, table: LossTable) -> Iterable[str]:
     """What stands at the head of a file, made of signs that end no comment."""
-    return map(inert, _head(outcome, table))
+    return map(comment_text, _head(outcome, table))
 
 
 def _head(outcome: Outcome, table: LossTable) -> Iterable[str]:
@@ -293,6 +293,6 @@ def _apart(values: Sequence[Any]) -> str:
     return "\n    " if rows else " "
 
 
-def inert(text: str) -> str:
+def comment_text(text: str) -> str:
     """Text for a comment of C and of Python, whoever wrote it: nothing in it ends or continues a line."""
     return re.sub(r"[^A-Za-z0-9 _+.,;:()%/=<>'^-]", "_", text)

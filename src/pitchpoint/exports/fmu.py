@@ -17,7 +17,7 @@ from uuid import UUID
 from xml.sax.saxutils import quoteattr
 
 from pitchpoint.errors import visible
-from pitchpoint.exports.evaluator import demand_room, header
+from pitchpoint.exports.evaluator import demand_small_table, header
 from pitchpoint.exports.simulators import HandedOver, Simulated, heading, nothing_lost, xml_comment
 from pitchpoint.results.store import write_bytes
 
@@ -123,7 +123,7 @@ def write_unit(
     Raises:
         InputError: the map is too large for a file of source.
     """
-    demand_room(given.joint.table, key)
+    demand_small_table(given.joint.table, key)
     lost = nothing_lost(beside)
     sources = _sources(given, unit)
     binaries = _binary(unit, sources)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pitchpoint.exports.evaluator import inert
+from pitchpoint.exports.evaluator import comment_text
 from pitchpoint.exports.fmu import SimulationUnit, UnitVariable, write_unit
 from pitchpoint.exports.simulators import LOCKED_SHARE, HandedOver, Simulated
 from pitchpoint.runs.joint_model import AngleWaves, JointModel, WindUpTable
@@ -183,5 +183,5 @@ def _holds(joint: JointModel) -> list[str]:
         f"Inertia of drive and rotor at the output {joint.armature:.6g} {unit['inertia']}; {stiffness}; play "
         f"{joint.play:.6g} {unit['travel']}. At rest friction holds what the band of the map holds. Where "
         f"friction locks the drive against its load, friction is {LOCKED_SHARE} times the load.",
-        *map(inert, _lacks(joint)),
+        *map(comment_text, _lacks(joint)),
     ]

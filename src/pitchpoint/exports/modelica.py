@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from pitchpoint.efficiency.loss_table import LossTable
-from pitchpoint.exports.evaluator import inert
+from pitchpoint.exports.evaluator import comment_text
 from pitchpoint.exports.modelica_map import MAP_GEAR, MapTables, map_gear, map_lost, map_tables
 from pitchpoint.exports.simulators import HandedOver, Simulated, heading, lost_lines
 from pitchpoint.results.store import write_text
@@ -240,12 +240,12 @@ def _package(
         "Torque that is lost by the loss map: bilinear over torque and logarithm of the speed, linear over "
         "the temperature. At rest the torque that holds is between the starting torques of the map."
     )
-    text = inert(joint.title).strip()
+    text = comment_text(joint.title).strip()
     return (
         f'{remark}\npackage {name} "{text}"\n{gears}{map_gear(given, whole)}'
         f"{_annotation(map_words)}  end {MAP_GEAR};\n\n"
         f"{_joint(given, of_map=False)}\n{_joint(given, of_map=True)}"
-        f'  annotation(uses(Modelica(version = "4.0.0")), version = "{inert(joint.version)}",\n'
+        f'  annotation(uses(Modelica(version = "4.0.0")), version = "{comment_text(joint.version)}",\n'
         f"    {_documentation(paragraphs)});\nend {name};\n"
     )
 

@@ -6,7 +6,13 @@ from importlib.resources import files
 from pathlib import Path
 
 from pitchpoint.efficiency.friction_fit import FrictionFit
-from pitchpoint.exports.evaluator import behind, demand_room, inert, map_code, module_head
+from pitchpoint.exports.evaluator import (
+    comment_text,
+    demand_small_table,
+    map_code,
+    module_head,
+    source_after_statements,
+)
 from pitchpoint.exports.mujoco_joint import HOLDS
 from pitchpoint.exports.simulators import (
     HandedOver,
@@ -40,7 +46,7 @@ def write_mujoco(given: Simulated, folder: Path) -> HandedOver:
     Raises:
         InputError: the map is too large for a file of source.
     """
-    demand_room(given.joint.table, "--mujoco")
+    demand_small_table(given.joint.table, "--mujoco")
     fit = friction_at_load(given)
     lost = lost_without_load(given, fit, BESIDE)
     texts = {
@@ -156,7 +162,8 @@ def _play(given: Simulated, axis: str, kind: str) -> str:
     """Joint that is free within the backlash; a remark where there is none."""
     play = given.joint.play
     if play < 1e-9:
-        return f"        <!-- {inert('no backlash is known: a joint with limited range would be it')} -->\n"
+        words = comment_text("no backlash is known: a joint with limited range would be it")
+        return f"        <!-- {words} -->\n"
     half = f"{0.5 * play:.9g}"
     return (
         f'        <joint name="play" type="{kind}" axis="{axis}" limited="true" range="-{half} {half}" '
@@ -182,7 +189,9 @@ def _module(given: Simulated) -> str:
     )
     head = module_head([*heading(given, what), "\n".join(usage), closing])
     names = ["ABOUT", "TABLE", "LoadFriction", "at", "at_many", "at_rest", "renewed_friction"]
-    code = re.sub(r"^ *>{3} from pitchpoint.*\n", "", behind(source, 6), flags=re.M)
+    code = re.sub(
+        r"^ *>{3} from pitchpoint.*\n", "", source_after_statements(source, 6), flags=re.M
+    )
     given_text = f"temperature={given.temperature!r}, law={joint.law!a}"
     return (
         f"{head}{map_code(given.outcome, joint.table, names)}\n"

@@ -8,11 +8,11 @@ import numpy as np
 from scipy.interpolate import NearestNDInterpolator
 
 from pitchpoint.errors import visible
-from pitchpoint.exports.evaluator import inert
+from pitchpoint.exports.evaluator import comment_text
 from pitchpoint.exports.simulators import HandedOver, Simulated, heading, nothing_lost
 from pitchpoint.results.store import write_bytes, write_text
 
-__all__ = ["filled", "write_simscape"]
+__all__ = ["filled_from_nearest", "write_simscape"]
 
 BESIDE = (
     "A lookup of loss_torque over torque, log_speed and temperature, linear, is the loss map itself. Gear "
@@ -55,12 +55,12 @@ def write_simscape(given: Simulated, folder: Path) -> HandedOver:
     return HandedOver([folder / "joint.mat", folder / "load_joint.m"], lost)
 
 
-def filled(values: np.ndarray) -> np.ndarray:
+def filled_from_nearest(values: np.ndarray) -> np.ndarray:
     """Values with those that are not known taken from the nearest place, by number of nodes.
 
     Example:
         >>> import numpy as np
-        >>> filled(np.array([[1.0, np.nan], [3.0, 4.0]])).tolist()
+        >>> filled_from_nearest(np.array([[1.0, np.nan], [3.0, 4.0]])).tolist()
         [[1.0, 1.0], [3.0, 4.0]]
     """
     finite = np.isfinite(values)
@@ -88,9 +88,9 @@ def _content(given: Simulated) -> dict[str, Any]:
         "speed": np.array(table.speeds[1:]),
         "log_speed": np.log(table.speeds[1:]),
         "temperature": np.array(table.temperatures),
-        "loss_torque": filled(np.asarray(point.loss) / speed),
-        "loss_power": filled(np.asarray(point.loss)),
-        "efficiency": filled(np.asarray(point.efficiency)),
+        "loss_torque": filled_from_nearest(np.asarray(point.loss) / speed),
+        "loss_power": filled_from_nearest(np.asarray(point.loss)),
+        "efficiency": filled_from_nearest(np.asarray(point.efficiency)),
         "locked": np.asarray(point.locked).astype(float),
         "lowest_holding_torque": np.array(holding)[..., 0],
         "highest_holding_torque": np.array(holding)[..., 1],
@@ -99,7 +99,7 @@ def _content(given: Simulated) -> dict[str, Any]:
         "armature": joint.armature,
         "stiffness": np.nan if joint.wind_up is None else joint.wind_up.at_load,
         "limits": {"torque": joint.torque_limit, **joint.limits},
-        "units": {name: inert(unit) for name, unit in joint.units.items()},
+        "units": {name: comment_text(unit) for name, unit in joint.units.items()},
         "title": visible(joint.title),
         "law": joint.law,
         "version": joint.version,

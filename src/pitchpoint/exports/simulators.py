@@ -21,10 +21,10 @@ from pitchpoint.efficiency.friction_fit import (
     loss_nodes,
 )
 from pitchpoint.errors import InputError
-from pitchpoint.exports.evaluator import SIGNS, inert
+from pitchpoint.exports.evaluator import SIGNS, comment_text
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.store import make_folder
-from pitchpoint.runs.joint_model import PARTS, JointModel, joint_model, part_of_map, quantity_of
+from pitchpoint.runs.joint_model import PARTS, JointModel, joint_model, part_of_map, si_quantity
 from pitchpoint.runs.run import Outcome
 from pitchpoint.units import degrees_celsius
 
@@ -195,8 +195,8 @@ def _simulated(outcome: Outcome, asked: Asked, key: str) -> Simulated:
         raise InputError(_OF_OTHERS, key=key) from None
     if not {*joint.table.units} <= _UNITS:
         raise InputError(_OF_OTHERS, key=key)
-    load = quantity_of(asked.load, joint.units["torque"], "--load")
-    warm = quantity_of(asked.temperature, "K", "--temperature")
+    load = si_quantity(asked.load, joint.units["torque"], "--load")
+    warm = si_quantity(asked.temperature, "K", "--temperature")
     degrees = joint.table.temperatures
     degree = _nearest_of_map(joint) if warm is None else float(degrees_celsius(np.asarray(warm)))
     for value, axis, of, text, unit in (
@@ -232,16 +232,17 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
     """Paragraphs that stand at the head of every file: what it is, of which drive, and its signs."""
     joint, unit = given.joint, given.joint.units
     yield what
-    yield inert(
+    yield comment_text(
         f"{joint.title}: {joint.driver} drives {joint.output}. Case {joint.case}, variant {joint.variant}, "
         f"digest {joint.digest}, friction law {joint.law}, Pitchpoint {joint.version}."
     )
     turns = "against" if joint.ratio < 0.0 else "with"
     yield SIGNS + (
-        f" The ratio is {abs(joint.ratio):.9g}; {inert(joint.driver)} itself turns {turns} the output. "
+        f" The ratio is {abs(joint.ratio):.9g}; {comment_text(joint.driver)} itself turns {turns} "
+        "the output. "
         f"Units: {unit['torque']}, {unit['speed']}, {unit['inertia']}, {unit['driver']} at the driver, degC."
     )
-    yield inert(
+    yield comment_text(
         f"The loss map goes to {joint.limits['largest_torque']:.6g} {unit['torque']} and "
         f"{joint.limits['largest_speed']:.6g} {unit['speed']} of the output, and from "
         f"{joint.table.temperatures[0]:g} to {joint.table.temperatures[-1]:g} degC. {_beside_map(given)}"
@@ -253,7 +254,7 @@ def heading(given: Simulated, what: str) -> Iterator[str]:
             + f" {unit['torque']}. Loads and lives that change are another matter: see a duty cycle."
         )
     if joint.lacks:
-        yield "Not known of this drive: " + inert(
+        yield "Not known of this drive: " + comment_text(
             "; ".join(f"{name.replace('_', ' ')} ({why})" for name, why in joint.lacks.items())
             + "."
         )

@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.inputs import printed_input_rows
 
 __all__ = ["INPUTS", "Column", "Sheet", "exported", "sheets", "table_of_inputs"]
 
@@ -120,7 +120,7 @@ def sheets(outcome: Outcome, *, si: bool = False) -> Iterator[Sheet]:
 
 def table_of_inputs(outcome: Outcome) -> Sheet:
     """Inputs as resolved, in words."""
-    frame = pd.DataFrame(input_rows(outcome.manifest))
+    frame = pd.DataFrame(printed_input_rows(outcome.manifest))
     words = {
         "table": "table of the case file, or what follows from it",
         "key": "key in the table",

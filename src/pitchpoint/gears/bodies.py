@@ -14,7 +14,7 @@ from pitchpoint._jax import jnp
 
 __all__ = [
     "MassInertia",
-    "as_one",
+    "combined_inertia",
     "completed",
     "disc",
     "drawing",
@@ -46,13 +46,13 @@ def disc(*, density: float, width: float, outer: float, inner: float) -> tuple[f
     return mass, mass * (outer**2 + inner**2) / 2.0
 
 
-def as_one(bodies: Iterable[MassInertia]) -> MassInertia:
+def combined_inertia(bodies: Iterable[MassInertia]) -> MassInertia:
     """Mass and moment of inertia of bodies that turn as one.
 
     From the sum over bodies on one axis.
 
     Example:
-        >>> as_one([(1.0, 0.5), (2.0, 0.25)])
+        >>> combined_inertia([(1.0, 0.5), (2.0, 0.25)])
         (3.0, 0.75)
     """
     masses, inertias = zip(*bodies, strict=True)

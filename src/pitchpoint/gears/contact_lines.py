@@ -16,7 +16,7 @@ from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.pairs import ACTION, way
+from pitchpoint.gears.pairs import ACTION, way_of_pairs
 
 __all__ = [
     "LARGEST_CONTACT_RATIO",
@@ -24,7 +24,7 @@ __all__ = [
     "InvoluteMesh",
     "PathOfContact",
     "PitchPoint",
-    "lanes_for",
+    "lanes_for_contact_ratio",
     "line_of_action",
     "pitch_point",
 ]
@@ -159,7 +159,7 @@ def _sliced(
     return low + middle * share, jnp.broadcast_to(share, (low.shape[0], count, *low.shape[2:]))
 
 
-def lanes_for(contact_ratio: float, *, helical: bool = False) -> int:
+def lanes_for_contact_ratio(contact_ratio: float, *, helical: bool = False) -> int:
     """Static count of pairs to hold for a contact ratio: few values, so that few programs are compiled."""
     for limit in _LANES_FOR_RATIO_BELOW:
         if contact_ratio < limit:
@@ -231,7 +231,7 @@ class InvoluteMesh(Mesh):
         return 1.0 - 2.0 * self.right_flank
 
 
-way.register(InvoluteMesh, lambda _: ACTION)
+way_of_pairs.register(InvoluteMesh, lambda _: ACTION)
 
 
 @singledispatch

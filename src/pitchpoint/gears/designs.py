@@ -18,11 +18,11 @@ __all__ = [
     "Faults",
     "Group",
     "Number",
-    "alike",
     "check_counts",
-    "each",
+    "designs_by_flags",
+    "over_designs",
     "padded",
-    "rows",
+    "select_designs",
 ]
 
 Number = float | Float[Array, ""]
@@ -79,7 +79,7 @@ class Designs(Generic[M]):
             raise self.refused[number]
         for group in self.groups:
             for place in np.flatnonzero(group.numbers == number):
-                design: M = jax.tree.map(array, rows(group.mesh, int(place)))
+                design: M = jax.tree.map(array, select_designs(group.mesh, int(place)))
                 return design
         raise IndexError(f"there are {len(self)} designs, and number {number} is none of them")
 
@@ -109,7 +109,7 @@ class Designs(Generic[M]):
         return ""
 
 
-def rows(tree: T, where: Any) -> T:
+def select_designs(tree: T, where: Any) -> T:
     """Some designs of a batch, as arrays of NumPy."""
     chosen: T = jax.tree.map(lambda leaf: np.asarray(leaf)[where], tree)
     return chosen
@@ -122,17 +122,17 @@ LEAST = 64
 def padded(tree: T, count: int) -> T:
     """A batch of so many designs with its last one repeated up to 64 or a power of two: few programs."""
     size = max(LEAST, 1 << (count - 1).bit_length())
-    return rows(tree, np.minimum(np.arange(size), count - 1))
+    return select_designs(tree, np.minimum(np.arange(size), count - 1))
 
 
-def each(compute: Callable[..., T], tree: Any, axes: int) -> T:
+def over_designs(compute: Callable[..., T], tree: Any, axes: int) -> T:
     """What a function of one design gives for all along so many leading axes."""
     for _ in range(axes):
         compute = jax.vmap(compute)
     return compute(tree)
 
 
-def alike(flags: np.ndarray) -> Iterator[tuple[tuple[bool, ...], np.ndarray]]:
+def designs_by_flags(flags: np.ndarray) -> Iterator[tuple[tuple[bool, ...], np.ndarray]]:
     """Rows of flags that occur, and the numbers of the designs that have them.
 
     Args:

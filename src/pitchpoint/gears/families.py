@@ -17,7 +17,7 @@ from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.gears.table import GearsTable
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.input.tables import Table, by, tag
+from pitchpoint.input.tables import Table, table_by_key, tag
 
 if TYPE_CHECKING:
     from pitchpoint.gears.family import Family, Made
@@ -45,7 +45,7 @@ TABLES: tuple[type[GearsTable], ...] = (
 def _by_family(*tables: type[Table]) -> Any:
     """Annotation of a table [gears] that is one of these, by its family."""
     tagged = (Annotated[table, Tag(tag(table))] for table in tables)
-    return Annotated[reduce(or_, tagged), Field(discriminator=by("family", *tables))]
+    return Annotated[reduce(or_, tagged), Field(discriminator=table_by_key("family", *tables))]
 
 
 if TYPE_CHECKING:

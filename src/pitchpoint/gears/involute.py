@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.gears.pinion_cutter import PinionCutting
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
-from pitchpoint.roots import hypot, root
+from pitchpoint.roots import find_root, hypot
 
 __all__ = [
     "FILLET_STATIONS",
@@ -170,7 +170,7 @@ def inverse_involute(value: Float[Array, ""]) -> Float[Array, ""]:
     Source: ISO 21771:2007, involute function, inverted by Newton's method.
     """
     guess = jnp.arctan(value + jnp.minimum(jnp.cbrt(3.0 * value), 1.5))
-    return root(lambda angle: involute(angle) / value - 1.0, guess, jnp.pi / 2.0)[0]
+    return find_root(lambda angle: involute(angle) / value - 1.0, guess, jnp.pi / 2.0)[0]
 
 
 def transverse_angle(
@@ -523,7 +523,7 @@ class InvoluteGear(eqx.Module):
         scan = self.pressure_angle + span * jnp.linspace(0, 1, 200) ** 3
         first_crossed = jnp.argmax(self._removed(scan[1:]) > 0.0)
         guess = (scan[first_crossed] + scan[first_crossed + 1]) / 2.0 - self.pressure_angle
-        beyond, _ = root(lambda x: self._removed(self.pressure_angle + x), guess, span)
+        beyond, _ = find_root(lambda x: self._removed(self.pressure_angle + x), guess, span)
         return self.pressure_angle + beyond
 
     @property

@@ -6,7 +6,15 @@ from jaxtyping import Array, Float, Int
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 
-__all__ = ["Body", "OnBalls", "ball_force", "ball_stiffness", "opened", "over_batch", "seated"]
+__all__ = [
+    "Body",
+    "OnBalls",
+    "ball_force",
+    "ball_stiffness",
+    "over_batch",
+    "seated",
+    "separation_on_balls",
+]
 
 SEATING_STEPS = 60
 """Newton steps of the balls that seat a body without load; usual are ten."""
@@ -44,7 +52,7 @@ Body = Float[Array, "lane lane *#b"] | OnBalls
 """How a body couples lanes: by a matrix of its own, or held by balls."""
 
 
-def opened(
+def separation_on_balls(
     gap: Float[Arrays, "pair slice *#b"], body: Body | None
 ) -> Float[Array, "pair slice *#b"]:
     """Separation of unloaded flanks on a body as its balls hold it [m].

@@ -32,13 +32,13 @@ __all__ = [
     "since_entry",
     "spots_on_turning",
     "touching",
-    "way",
+    "way_of_pairs",
 ]
 
 
 @dataclass(frozen=True)
 class Way:
-    """Words of the way of a pair through the mesh, which `Contacts.path` counts, see `way`.
+    """Words of the way of a pair through the mesh, which `Contacts.path` counts, see `way_of_pairs`.
 
     Attributes:
         long_name, symbol: of a place on it.
@@ -103,7 +103,7 @@ TURN = Way("turns of the driver", "θ/2π", "angle of the driver [°]", 360.0, "
 
 
 @singledispatch
-def way(mesh: Any) -> Way:
+def way_of_pairs(mesh: Any) -> Way:
     """Words of the way of pairs through a mesh, turns of the driver unless its gears say other ones."""
     return TURN
 

@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 
-__all__ = ["INSIDE", "apart", "between", "edges", "lobatto", "nodes"]
+__all__ = ["INSIDE", "edges", "lobatto", "nodes", "phases_past_ties", "polynomial_matrices"]
 
 INSIDE = 1e-9
 """Nodes keep this relative distance from the events, so that each lies on one side of them."""
@@ -44,7 +44,7 @@ def nodes(
     return start + length * unit, length * weight
 
 
-def apart(
+def phases_past_ties(
     phase: Float[Array, "segment node"], weight: Float[Array, "segment node"]
 ) -> Float[Array, "segment node"]:
     """Phases whose segments between events that are together are at the first node behind these.
@@ -75,7 +75,7 @@ def lobatto(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @cache
-def between(count: int) -> list[np.ndarray]:
+def polynomial_matrices(count: int) -> list[np.ndarray]:
     """Matrices from values at the nodes to a polynomial and its derivatives at points between.
 
     The points are the nodes and seven more between neighbours, on [-1, 1]; last comes their

@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 
-__all__ = ["RatedPair", "StandardPair", "bare", "ends_at_tips", "rated_pair", "standard_pair"]
+__all__ = ["RatedPair", "StandardPair", "bare_pair", "ends_at_tips", "rated_pair", "standard_pair"]
 
 
 class RatedPair(eqx.Module):
@@ -119,7 +119,7 @@ def rated_pair(mesh: Any) -> RatedPair:
 
 
 @singledispatch
-def bare(mesh: Any) -> Any:
+def bare_pair(mesh: Any) -> Any:
     """The same gears with their dimensions alone, so that many share a program that asks no more."""
     return mesh
 

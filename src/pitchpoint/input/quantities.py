@@ -68,7 +68,7 @@ class Quantity:
     def json_schema(self) -> JsonSchemaValue:
         """Numbers in their range, or text that begins with one; ranges of those with units in words."""
         text = {"type": "string", "pattern": r"^\s*[+-]?\.?\d"}
-        if not units.plain(self.kind):
+        if not units.allows_plain_number(self.kind):
             example = units.example(self.kind).strip('"')
             return {**text, "description": self.told, "examples": [example]}
         number: JsonSchemaValue = {"type": "number"}
@@ -83,7 +83,7 @@ class Quantity:
     @property
     def told(self) -> str:
         """Kind, range and units in words."""
-        if units.plain(self.kind):
+        if units.allows_plain_number(self.kind):
             noun = "a whole number" if self.whole else units.noun(self.kind)
             return f"{noun}; {self.allowed}"
         return f"{units.noun(self.kind)}; {self.allowed}; units: {', '.join(units.units_of(self.kind))}"
@@ -131,7 +131,7 @@ class Quantity:
     @property
     def example(self) -> str:
         """A value of the range as it is written, in the unit in which it is shown."""
-        plain = units.plain(self.kind)
+        plain = units.allows_plain_number(self.kind)
         if self.whole:
             return self.show(_TEETH if self.low < 0.0 else max(self.low, 2.0))
         number = units.example(self.kind).strip('"').partition(" ")[0]
@@ -180,7 +180,7 @@ class Quantity:
         """
         usual = units.example("count" if self.whole else self.kind).strip('"')
         message = message.replace(f'like "{usual}"', f'like "{self.example.strip(chr(34))}"')
-        if self.unit == "1" or units.plain(self.kind):
+        if self.unit == "1" or units.allows_plain_number(self.kind):
             return message
         unit = re.escape(usual.partition(" ")[2])
         missing = re.search(rf'write "([^" ]+) {unit}"', message)
@@ -255,7 +255,7 @@ class Pair:
             if len(parts) != 2 or not all(map(self.each._reads, parts)):
                 raise
             plain = ", ".join(
-                part.strip() if units.plain(self.each.kind) else f'"{part.strip()}"'
+                part.strip() if units.allows_plain_number(self.each.kind) else f'"{part.strip()}"'
                 for part in parts
             )
             raise InputError(

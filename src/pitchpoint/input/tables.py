@@ -20,17 +20,17 @@ __all__ = [
     "Table",
     "UnknownKeyError",
     "alternatives",
-    "by",
+    "field_marks",
+    "field_quantity",
     "fields_at",
     "forms",
     "holds_named_tables",
     "is_stated",
-    "marks",
+    "key_sentences",
     "measure_of",
     "quantity_in",
-    "quantity_of",
     "quantity_of_any",
-    "sentences",
+    "table_by_key",
     "tag",
     "usual_words",
 ]
@@ -42,13 +42,13 @@ DECIDING = ("family", "form")
 class Table(BaseModel):
     """A table of a case file: no unknown keys, values fixed once read.
 
-    The sentence under a key is what the reference, editors and new case files say of it, see `sentences`.
+    The sentence under a key is what the reference, editors and new case files say of it, see `key_sentences`.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
-def sentences(table: type[BaseModel]) -> dict[str, str]:
+def key_sentences(table: type[BaseModel]) -> dict[str, str]:
     """The sentence under each key of a table, out of its source: nobody waits for it who does not ask."""
     bases = (base for base in reversed(table.__mro__) if issubclass(base, Table | table))
     return {
@@ -72,7 +72,7 @@ def _told(table: ast.ClassDef) -> Iterator[tuple[str, str]]:
             yield ast.unparse(line.target), inspect.cleandoc(ast.literal_eval(below.value))
 
 
-def by(key: str, *tables: type[Table]) -> Discriminator:
+def table_by_key(key: str, *tables: type[Table]) -> Discriminator:
     """Picks one of several tables by the value of a key; the first where it is missing or unknown.
 
     The first table then says what is wrong with the value.
@@ -146,7 +146,7 @@ def holds_named_tables(info: FieldInfo) -> bool:
     return get_origin(info.annotation) is dict and not numbered
 
 
-def quantity_of(info: FieldInfo) -> Quantity | None:
+def field_quantity(info: FieldInfo) -> Quantity | None:
     """Kind and range of the values of a field, None where they are no quantities."""
     measure = measure_of(info)
     return measure.each if isinstance(measure, Pair) else measure
@@ -154,13 +154,13 @@ def quantity_of(info: FieldInfo) -> Quantity | None:
 
 def measure_of(info: FieldInfo) -> Quantity | Pair | None:
     """The same, of both gears together where a field holds a value for each."""
-    every = (*info.metadata, *marks(info.annotation))
+    every = (*info.metadata, *field_marks(info.annotation))
     return next((mark for mark in every if isinstance(mark, Quantity | Pair)), None)
 
 
 def usual_words(info: FieldInfo) -> str:
     """The value that a quantity has where none is given, in words; empty where there is none."""
-    quantity, usual = quantity_of(info), info.default
+    quantity, usual = field_quantity(info), info.default
     if quantity is None or usual is None or info.is_required():
         return ""
     values = usual if isinstance(usual, tuple) else (usual,)
@@ -170,11 +170,11 @@ def usual_words(info: FieldInfo) -> str:
     return f"default {' / '.join(shown_values)}" if shown_values else ""
 
 
-def marks(annotation: Any) -> Iterator[Any]:
+def field_marks(annotation: Any) -> Iterator[Any]:
     """What is said of the values that a field may hold, alone or in a list."""
     for option in getattr(annotation, "__args__", ()):
         yield from getattr(option, "__metadata__", ())
-        yield from marks(option)
+        yield from field_marks(option)
 
 
 def fields_at(location: tuple[Any, ...], model: type[BaseModel]) -> Mapping[str, FieldInfo]:
@@ -245,7 +245,7 @@ def quantity_in(key: str, tree: Any, models: Sequence[type[BaseModel]]) -> Quant
             every = dict.fromkeys(name for allowed in fields for name in allowed)
             raise UnknownKeyError(key, parts[: position + 1], [*every])
         if position == len(parts) - 1:
-            return quantity_of(holding[0])
+            return field_quantity(holding[0])
         tree = tree.get(part, {}) if isinstance(tree, Mapping) else None
         if any(isinstance(mark, Numbered) for mark in holding[0].metadata):
             tree = None

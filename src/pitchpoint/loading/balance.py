@@ -7,12 +7,12 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, along, total
-from pitchpoint.factored import Arrays, Numbers, product
-from pitchpoint.roots import quotient, root, third_order_step
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
+from pitchpoint.factored import Arrays, Numbers, factored_product
+from pitchpoint.roots import find_root, quotient, third_order_step
 from pitchpoint.status import Code, Status
 
-__all__ = ["Balance", "balance", "first_guess", "tooth_load"]
+__all__ = ["Balance", "first_guess", "force_balance", "tooth_load"]
 
 Lanes = Float[Numbers, "pair slice *#b"]
 Each = Float[Arrays, "*#b"]
@@ -57,7 +57,7 @@ class Balance(eqx.Module):
             normal arm over -sum(share times sliding arm), at which the leverage of the contact force
             vanishes; infinite where friction pushes on.
 
-    Source: Tian et al. (2024), eqs. 1, 2 and 16, see `balance`.
+    Source: Tian et al. (2024), eqs. 1, 2 and 16, see `force_balance`.
     """
 
     force: Float[Array, "*b"]
@@ -91,7 +91,7 @@ class Balance(eqx.Module):
 class _Equation:
     """Equation of balance of given states for the contact force over that without friction.
 
-    Arguments are those of `balance`.
+    Arguments are those of `force_balance`.
     """
 
     def __init__(
@@ -108,9 +108,9 @@ class _Equation:
     ) -> None:
         self.contacts, self.share, self.loaded, self.load = contacts, share, loaded, load
         self.friction, self.rolling, self.drag = friction, rolling, drag
-        closing = along(contacts.normal, loaded)
-        rolling_speed = along(contacts.roll_arm, motion)
-        self.sense = _sign(along(contacts.slip_arm, motion), jnp.abs(rolling_speed))
+        closing = contact_velocity(contacts.normal, loaded)
+        rolling_speed = contact_velocity(contacts.roll_arm, motion)
+        self.sense = _sign(contact_velocity(contacts.slip_arm, motion), jnp.abs(rolling_speed))
         self.turn = jnp.sign(rolling_speed)
         self.arm = total(share * jnp.abs(closing))
         self.side = jnp.sign(total(share * closing))
@@ -127,7 +127,7 @@ class _Equation:
         # Laws never see a load of zero, where their slopes may be infinite.
         safe = jnp.where(force > 0.0, force, self.safe_load / self.arm)
         lanes = self.carrying & (self.carried > 0.0)
-        load = product(self.safe_share, safe)
+        load = factored_product(self.safe_share, safe)
         coefficient = jnp.where(lanes, self.friction(load), 0.0)
         if self.rolling is None:
             return coefficient, jnp.zeros_like(coefficient)
@@ -180,7 +180,7 @@ class _Equation:
 
 
 def first_guess(contacts: Contacts, share: Lanes, **given: Any) -> Each:
-    """Contact force over that without friction after one step of third order; arguments as in `balance`.
+    """Contact force over that without friction after one step of third order; arguments of `force_balance`.
 
     In single precision it takes half the time, and is near enough for one step in double precision.
 
@@ -190,7 +190,7 @@ def first_guess(contacts: Contacts, share: Lanes, **given: Any) -> Each:
     return third_order_step(equation.unbalance, equation.start())
 
 
-def balance(
+def force_balance(
     contacts: Contacts,
     share: Lanes,
     *,
@@ -238,7 +238,7 @@ def balance(
     most = LARGEST_RATIO * jax.lax.stop_gradient(start)
     left: Each | float = 0.0
     if guess is None:
-        ratio, iterations = root(equation.unbalance, start, most)
+        ratio, iterations = find_root(equation.unbalance, start, most)
         # A state without a root ends at the bracket, where laws would be asked for an absurd load.
         _, terms = equation.terms(jnp.where(ratio > _ALMOST * most, start, ratio))
     else:
@@ -263,12 +263,12 @@ def balance(
         beside = jnp.broadcast_to(drag(force), torque.shape)
         torque = torque + beside
         grip = grip - equation.pressed(ratio) / jnp.where(ratio == 0.0, 1.0, ratio)
-    residual = jnp.abs(jnp.abs(along(torque, loaded)) - load) / equation.safe_load
+    residual = jnp.abs(jnp.abs(contact_velocity(torque, loaded)) - load) / equation.safe_load
     residual = jnp.where(equation.carried < 0.0, jnp.inf, residual + left)
     if guess is not None:
         ratio, torque, residual, grip = _apart((ratio, torque, residual, grip))
     locked = (ratio > _ALMOST * most) | (grip <= 0.0)
-    slip = along(equation.friction_arms, loaded)
+    slip = contact_velocity(equation.friction_arms, loaded)
     hold = -equation.side * total(slip) / equation.arm
     # The inner choice keeps the slope finite where the outer one leaves the quotient out: else it is NaN.
     jamming = jnp.where(hold > 0.0, 1.0 / jnp.where(hold > 0.0, hold, 1.0), jnp.inf)
@@ -297,7 +297,7 @@ def tooth_load(
         contacts: of the mesh; the active ones press the driven coordinate the same way.
         loaded: one for the driven coordinate.
         load: torque or force there, not negative [N m or N].
-        drag: external torque on every coordinate from the normal force of each slice, see `balance`.
+        drag: external torque on every coordinate from the normal force of each slice, see `force_balance`.
 
     Returns:
         Torque or force [N m or N]; negative where the drag takes the coordinate along with more than
@@ -315,8 +315,8 @@ def _relief(
 ) -> Each:
     """External torque that overcomes the drag on the driven coordinate, counted as its load is."""
     assert drag is not None
-    closing = jnp.where(contacts.active, along(contacts.normal, loaded), 0.0)
-    return jnp.sign(total(closing)) * along(drag(force), loaded)
+    closing = jnp.where(contacts.active, contact_velocity(contacts.normal, loaded), 0.0)
+    return jnp.sign(total(closing)) * contact_velocity(drag(force), loaded)
 
 
 def _along(torques: Torques, rates: Float[Array, " dof"]) -> Each:

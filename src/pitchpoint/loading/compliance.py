@@ -4,10 +4,10 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.on_balls import Body, opened
+from pitchpoint.gears.on_balls import Body, separation_on_balls
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.tooth_compliance import TeethAt, Terms, teeth_at, unit_stiffness
 from pitchpoint.materials.solids import Solid
@@ -46,7 +46,7 @@ class Compliance(eqx.Module):
         Args:
             contacts: of the mesh.
         """
-        return opened(contacts.gap, self.body)
+        return separation_on_balls(contacts.gap, self.body)
 
 
 def compliance(
@@ -89,7 +89,7 @@ def mean_line_load(
 
     From the balance of the loaded coordinate under one load per length on all contact lines.
     """
-    arms = jnp.abs(along(contacts.normal, loaded))
+    arms = jnp.abs(contact_velocity(contacts.normal, loaded))
     return load / total(jnp.where(contacts.active, contacts.weight * arms, 0.0))
 
 

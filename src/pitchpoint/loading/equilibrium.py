@@ -10,7 +10,7 @@ from pitchpoint.factored import Arrays
 from pitchpoint.gears.on_balls import Body, OnBalls, ball_force, ball_stiffness, over_batch
 from pitchpoint.status import Code, Status
 
-__all__ = ["Equilibrium", "equilibrium", "touch"]
+__all__ = ["Equilibrium", "equilibrium", "touching_approach"]
 
 Lanes = Float[Arrays, "pair slice *#b"]
 Each = Float[Arrays, "*#b"]
@@ -299,7 +299,7 @@ class _Settling(NamedTuple):
     sets: Int[Array, ""]
 
 
-def touch(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each:
+def touching_approach(gap: Lanes, arm: Lanes, active: Bool[Array, "pair slice *#b"]) -> Each:
     """Approach at which the first of rigid contacts touches [rad or m]; arguments as in `equilibrium`.
 
     From the gap of each contact, which closes by its arm times the approach.

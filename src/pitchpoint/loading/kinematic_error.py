@@ -4,10 +4,10 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.contact.surface import Spot, Surfaces, missing
 from pitchpoint.loading.compliance import Compliance
-from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
+from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touching_approach
 
 __all__ = ["KinematicError", "added_gap", "kinematic_error"]
 
@@ -68,7 +68,10 @@ def kinematic_error(contacts: Contacts, yields: Compliance, added: Lanes) -> Kin
     From virtual work of the forces that a unit of the load adds.
     """
     teeth = yields.of_teeth(contacts)
-    given = {"arm": jnp.abs(along(contacts.normal, yields.loaded)), "active": contacts.active}
+    given = {
+        "arm": jnp.abs(contact_velocity(contacts.normal, yields.loaded)),
+        "active": contacts.active,
+    }
 
     gaps = yields.gap(contacts)
 
@@ -83,7 +86,7 @@ def kinematic_error(contacts: Contacts, yields: Compliance, added: Lanes) -> Kin
     _, more, plain = jax.jvp(plainly, (load,), (jnp.ones_like(load),), has_aux=True)
     deviating = under(gaps + added, load)
     return KinematicError(
-        geometric=touch(gaps + added, **given) - touch(gaps, **given),
+        geometric=touching_approach(gaps + added, **given) - touching_approach(gaps, **given),
         elastic_mean=total(more * added),
         under_load=deviating.approach - plain.approach,
         wind_up=plain.approach,

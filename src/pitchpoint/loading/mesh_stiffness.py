@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import Contacts, along
+from pitchpoint.contact.contacts import Contacts, contact_velocity
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh
@@ -124,4 +124,4 @@ def _mean_gap(gap: Lanes, springs: Lanes) -> Float[Array, "pair *b"]:
 def _action_arm(mesh: Mesh, contacts: Contacts) -> Lanes:
     """Closing along the normal of each contact while the gears close by one along the line of action."""
     action = line_of_action(mesh)
-    return along(contacts.normal, action) / jnp.sum(action**2)
+    return contact_velocity(contacts.normal, action) / jnp.sum(action**2)

@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, total
-from pitchpoint.factored import root
+from pitchpoint.factored import square_root
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh
 
@@ -138,7 +138,7 @@ def _resultant(vectors: Vectors) -> Float[Array, "3 *#b"]:
 
 
 def _size(vector: Float[Array, "3 *#b"]) -> Each:
-    found: Each = root(jnp.sum(vector**2, axis=0))
+    found: Each = square_root(jnp.sum(vector**2, axis=0))
     return found
 
 

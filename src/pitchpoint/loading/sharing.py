@@ -3,11 +3,11 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, along
+from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, contact_velocity
 from pitchpoint.errors import InputError
 from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh, has
-from pitchpoint.gears.pairs import WAVE, touching, way
+from pitchpoint.gears.pairs import WAVE, touching, way_of_pairs
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium
@@ -15,12 +15,12 @@ from pitchpoint.loading.registry import LOAD_SHARING, LoadSharing
 from pitchpoint.programs import program
 
 __all__ = [
-    "applies",
     "demand_sharing",
     "equal",
     "from_stiffness",
     "middle_of_path",
     "sanchez_2017",
+    "sharing_applies",
     "single",
     "xu_2021_cosine",
     "zhao_2022_cosine",
@@ -33,7 +33,7 @@ _XU_END = jnp.pi / 8.0
 _ZHAO_END = jnp.pi / 5.0
 
 
-def applies(sharing: LoadSharing, mesh: Mesh) -> bool:
+def sharing_applies(sharing: LoadSharing, mesh: Mesh) -> bool:
     """True if a model holds for a mesh."""
     return _limit(sharing, mesh) is None
 
@@ -43,7 +43,7 @@ def demand_sharing(sharing: LoadSharing, mesh: Mesh) -> None:
     limit = _limit(sharing, mesh)
     if limit is None:
         return
-    others = ", ".join(one.name for one in LOAD_SHARING.values() if applies(one, mesh))
+    others = ", ".join(one.name for one in LOAD_SHARING.values() if sharing_applies(one, mesh))
     raise InputError(f"'{sharing.name}' {limit}; choose one of {others}")
 
 
@@ -56,7 +56,7 @@ def _limit(sharing: LoadSharing, mesh: Mesh) -> str | None:
         return f"holds for {KINDS[sharing.shape]}, and these touch {TOUCH[mesh.shape]}"
     if sharing.flanks == "touching" and not touching(mesh):
         return "holds where all rigid flanks in mesh touch, and some of these have a gap"
-    if sharing.flanks == "wave" and way(mesh) is not WAVE:
+    if sharing.flanks == "wave" and way_of_pairs(mesh) is not WAVE:
         return "holds for strain-wave gears, and these are not"
     if not sharing.straight and sharing.ratio_range == (0.0, float("inf")):
         return None
@@ -109,7 +109,7 @@ def from_stiffness(contacts: Contacts, mesh: Mesh, yielding: Compliance | None) 
         yielding.of_teeth(contacts),
         yielding.body,
         gap=yielding.gap(contacts),
-        arm=jnp.abs(along(contacts.normal, yielding.loaded)),
+        arm=jnp.abs(contact_velocity(contacts.normal, yielding.loaded)),
         active=contacts.active,
         load=yielding.load,
     ).share

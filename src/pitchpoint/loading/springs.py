@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import touching
@@ -63,7 +63,7 @@ def springs(
     From the derivative of the equilibrium with respect to the load, see `equilibrium`.
     """
     load = jnp.asarray(load, float)
-    arm = jnp.abs(along(contacts.normal, loaded))
+    arm = jnp.abs(contact_velocity(contacts.normal, loaded))
     yields, change = _with_change(mesh, loaded, contacts, solids, terms, load)
     own, gap = yields.of_teeth(contacts), yields.gap(contacts)
     if touching(mesh) and yields.body is None:

@@ -5,13 +5,13 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, along, total
+from pitchpoint.contact.contacts import Contacts, contact_velocity, total
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.pairs import of_pairs, on_edge
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touch
+from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touching_approach
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import looping_program, program
@@ -104,7 +104,7 @@ def wind_up(
     From the equilibrium of its contacts, see `equilibrium`, and its derivative with respect to the load.
     """
     contacts = mesh.contacts(phase) if contacts is None else contacts
-    arm = jnp.abs(along(contacts.normal, loaded))
+    arm = jnp.abs(contact_velocity(contacts.normal, loaded))
     load = jnp.broadcast_to(load, jnp.broadcast_shapes(jnp.shape(load), jnp.shape(phase)))
     given = {"arm": arm, "active": contacts.active}
     behind = sum(mesh.body.in_series(solids, loaded).values(), jnp.zeros(()))
@@ -118,9 +118,9 @@ def wind_up(
     # The springs themselves depend on the load where the contact of the teeth does.
     moved, slope, aux = jax.jvp(approach, (load,), (jnp.ones_like(load),), has_aux=True)
     found, own, gap = aux
-    free = jnp.broadcast_to(touch(gap, **given), moved.shape)
+    free = jnp.broadcast_to(touching_approach(gap, **given), moved.shape)
     closed = jnp.where(contacts.active, gap - arm * free, 0.0)
-    slip = jnp.abs(along(contacts.slip_arm, loaded))
+    slip = jnp.abs(contact_velocity(contacts.slip_arm, loaded))
     return WindUp(
         load=load,
         wind_up=moved - free,

@@ -5,10 +5,10 @@ from math import inf
 from pitchpoint import units
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.mesh import Mesh, has
-from pitchpoint.lubrication.conditions import UNITS, arguments, of_other_shape
+from pitchpoint.lubrication.conditions import UNITS, law_arguments, of_other_shape
 from pitchpoint.lubrication.registry import AsperityLoad, FilmThickness, FrictionLaw
 
-__all__ = ["OF_PITCH_POINT", "Limited", "applies", "asks_for_pitch_point", "limits_words"]
+__all__ = ["OF_PITCH_POINT", "Limited", "asks_for_pitch_point", "limits_words", "why_inapplicable"]
 
 Limited = FrictionLaw | FilmThickness | AsperityLoad
 """Laws with ranges of conditions, outside of which they answer and results say so."""
@@ -33,11 +33,11 @@ def asks_for_pitch_point(law: FrictionLaw) -> bool:
         >>> [law.name for law in LAWS if asks_for_pitch_point(law)]
         ['iso_tr_14179_2']
     """
-    wanted, _ = arguments(law.function)
+    wanted, _ = law_arguments(law.function)
     return not OF_PITCH_POINT.isdisjoint(wanted)
 
 
-def applies(law: FrictionLaw, mesh: Mesh) -> str | None:
+def why_inapplicable(law: FrictionLaw, mesh: Mesh) -> str | None:
     """None if a law holds for the contacts of a mesh, else why not, in one sentence without its stop.
 
     Args:

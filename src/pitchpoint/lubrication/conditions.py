@@ -16,7 +16,7 @@ from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape
 from pitchpoint.contact.ellipse import Ellipse
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Numbers, as_array, product
+from pitchpoint.factored import Numbers, factored_product, product_array
 from pitchpoint.gears.contact_lines import PitchPoint
 
 __all__ = [
@@ -24,9 +24,9 @@ __all__ = [
     "UNITS",
     "Conditions",
     "Law",
-    "arguments",
     "demand_shape",
     "evaluate",
+    "law_arguments",
     "of_other_shape",
     "shape_of",
 ]
@@ -107,7 +107,7 @@ class Conditions(eqx.Module):
 
         Source: Hamrock and Dowson (1977), mean surface velocity.
         """
-        entrainment: Lanes = product(jnp.abs(self.roll / 2.0), self.speed)
+        entrainment: Lanes = factored_product(jnp.abs(self.roll / 2.0), self.speed)
         return entrainment
 
     @property
@@ -116,7 +116,7 @@ class Conditions(eqx.Module):
 
         Source: Johnson, Contact Mechanics (1985), section 1.2.
         """
-        sliding: Lanes = product(jnp.abs(self.slip), self.speed)
+        sliding: Lanes = factored_product(jnp.abs(self.slip), self.speed)
         return sliding
 
     @property
@@ -153,7 +153,7 @@ class Conditions(eqx.Module):
     def ellipse(self) -> Ellipse:
         """Semi-axes, pressure and approach of each contact; of elliptic contacts."""
         return self.elliptic.function(
-            load=as_array(self.load),
+            load=product_array(self.load),
             radius=self.radius,
             transverse_radius=self.transverse_radius,
             modulus=self.modulus,
@@ -224,7 +224,7 @@ class Conditions(eqx.Module):
 
         Source: Murch and Wilson (1975); Aihara (1987), equation 20.
         """
-        speed = as_array(self.entrainment)
+        speed = product_array(self.entrainment)
         loading: Lanes = self.viscosity_slope * self.viscosity * speed**2 / self.conductivity
         return loading
 
@@ -245,7 +245,7 @@ class Conditions(eqx.Module):
         """
         if self.film is None:
             raise InputError("asks for the film thickness, and no film law stands beside this law")
-        load = as_array(self.load)
+        load = product_array(self.load)
         at = replace(self, load=jnp.where(load > 0.0, load, 1.0), film=None)
         return jnp.where(load > 0.0, evaluate(self.film, at), 0.0)
 
@@ -459,7 +459,7 @@ def _asked(function: Callable[..., Any]) -> Shape | None:
     return next((_OF_SHAPE[name] for name in parameters if name in _OF_SHAPE), None)
 
 
-def arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
+def law_arguments(law: Callable[..., Any]) -> tuple[list[str], dict[str, Any]]:
     """Conditions that a law asks for, and its own parameters with their defaults.
 
     Raises:
@@ -515,7 +515,7 @@ def evaluate(
     if film is not None:
         conditions = replace(conditions, film=film)
     function = _function(law)
-    wanted, _ = arguments(function)
+    wanted, _ = law_arguments(function)
     values = {name: getattr(conditions, name) for name in wanted}
     law_value = _once(function)(**values, **(parameters or {}))
     heating = getattr(law, "heating", None)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.solids import SolidRecord
 
 __all__ = ["LEAST_PECLET", "Conductor", "moving_strip", "peclet_number", "shared_flash"]
@@ -37,8 +37,8 @@ class Conductor(eqx.Module):
     heat_capacity: Float[Arrays, "..."]
 
     def __init__(self, *, conductivity: ArrayLike, heat_capacity: ArrayLike) -> None:
-        self.conductivity = as_array(conductivity)
-        self.heat_capacity = as_array(heat_capacity)
+        self.conductivity = float64_array(conductivity)
+        self.heat_capacity = float64_array(heat_capacity)
 
     @classmethod
     def of(cls, solid: SolidRecord) -> Conductor:

@@ -17,7 +17,7 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, as_array, log, scaled
+from pitchpoint.factored import Numbers, log, product_array, scaled
 
 __all__ = [
     "constant",
@@ -169,7 +169,7 @@ def xu_2007(
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = _XU
     GPa, cP = scaled(pressure, 1e-9), scaled(viscosity, 1e3)
     um, SR = scaled(roughness_rq, 1e6), abs(scaled(slide_roll_ratio, 1.0))
-    heaviness = as_array(GPa * (SR * log(cP, _FLOOR) / math.log(10.0)))
+    heaviness = product_array(GPa * (SR * log(cP, _FLOOR) / math.log(10.0)))
     f = (b1 + b9 * jnp.exp(um)) + b4 * heaviness + b5 * jnp.exp(-heaviness)
     return _power_product(
         (GPa, b2),

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, as_array
+from pitchpoint.factored import Numbers, product_array
 from pitchpoint.lubrication.registry import FilmThickness, InletHeating, RollingResistance
 
 __all__ = [
@@ -59,7 +59,7 @@ def wilson_sheu_1983(*, thermal_loading: Each, slide_roll_ratio: Each) -> Each:
         >>> round(float(wilson_sheu_1983(thermal_loading=1.0, slide_roll_ratio=0.5)), 4)
         0.422
     """
-    sliding = 1.0 + 14.8 * _power(0.5 * as_array(slide_roll_ratio), 0.83)
+    sliding = 1.0 + 14.8 * _power(0.5 * product_array(slide_roll_ratio), 0.83)
     return 1.0 / (1.0 + 0.241 * sliding * _power(thermal_loading, 0.64))
 
 

@@ -9,9 +9,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 
-__all__ = ["as_array"]
+__all__ = ["float64_array"]
 
 
-def as_array(value: ArrayLike | Sequence[float]) -> Float[Array, "..."]:
+def float64_array(value: ArrayLike | Sequence[float]) -> Float[Array, "..."]:
     """Return a float64 array: a leaf that is a Python float would retrace for each value."""
     return array(value, jnp.float64)

@@ -11,7 +11,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.factored import Numbers
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.registry import (
     DENSITY,
@@ -79,10 +79,10 @@ class Fluid(eqx.Module):
         shear_parameters: Mapping[str, ArrayLike] | None = None,
         pressure_parameters: Mapping[str, ArrayLike] | None = None,
     ) -> None:
-        self.viscosity, self.density = as_array(viscosity), as_array(density)
-        self.pressure_viscosity = as_array(pressure_viscosity)
-        self.viscosity_slope = as_array(viscosity_slope)
-        self.temperature = as_array(temperature)
+        self.viscosity, self.density = float64_array(viscosity), float64_array(density)
+        self.pressure_viscosity = float64_array(pressure_viscosity)
+        self.viscosity_slope = float64_array(viscosity_slope)
+        self.temperature = float64_array(temperature)
         self.viscosity_law = VISCOSITY[viscosity_law].name
         self.density_law = DENSITY[density_law].name
         self.shear_law = SHEAR_STRESS[shear_law].name
@@ -230,7 +230,7 @@ def _own(given: Mapping[str, ArrayLike], *laws: RheologyLaw) -> dict[str, Float[
         raise InputError(
             f"'{shorten(name)}' is no parameter of {what}{nearest(name, law_parameters)}"
         )
-    return {name: as_array(value) for name, value in given.items()}
+    return {name: float64_array(value) for name, value in given.items()}
 
 
 def _known_to(law: RheologyLaw, values: Mapping[str, Array]) -> dict[str, Array]:

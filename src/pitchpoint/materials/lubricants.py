@@ -14,7 +14,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.data import Datum, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
@@ -67,14 +67,14 @@ class FreeVolume(eqx.Module):
     Source: Bair (2019).
     """
 
-    free_volume_factor: Float[Array, "..."] = eqx.field(converter=as_array)
-    occupied_volume: Float[Array, "..."] = eqx.field(converter=as_array)
-    occupied_expansion: Float[Array, "..."] = eqx.field(converter=as_array)
-    volume_temperature: Float[Array, "..."] = eqx.field(converter=as_array)
-    modulus_rise: Float[Array, "..."] = eqx.field(converter=as_array)
-    modulus_cold: Float[Array, "..."] = eqx.field(converter=as_array)
-    modulus_slope: Float[Array, "..."] = eqx.field(converter=as_array)
-    expansion: Float[Array, "..."] = eqx.field(converter=as_array)
+    free_volume_factor: Float[Array, "..."] = eqx.field(converter=float64_array)
+    occupied_volume: Float[Array, "..."] = eqx.field(converter=float64_array)
+    occupied_expansion: Float[Array, "..."] = eqx.field(converter=float64_array)
+    volume_temperature: Float[Array, "..."] = eqx.field(converter=float64_array)
+    modulus_rise: Float[Array, "..."] = eqx.field(converter=float64_array)
+    modulus_cold: Float[Array, "..."] = eqx.field(converter=float64_array)
+    modulus_slope: Float[Array, "..."] = eqx.field(converter=float64_array)
+    expansion: Float[Array, "..."] = eqx.field(converter=float64_array)
 
     def parameters(self, T: ArrayLike) -> dict[str, Float[Array, "..."]]:
         """Those of `doolittle_1951` and `tait_1888` for an oil whose inlet is at T [K], shapes (...) [SI]."""
@@ -154,14 +154,17 @@ class Lubricant(eqx.Module):
         nu_0: ArrayLike | None = None,
         free_volume: FreeVolume | None = None,
     ) -> None:
-        self.nu_1, self.nu_2 = as_array(nu_1), as_array(nu_2)
-        self.T_1, self.T_2 = as_array(T_1), as_array(T_2)
-        self.density_15, self.density_slope = as_array(density_15), as_array(density_slope)
-        self.gold_s, self.gold_t = as_array(gold_s), as_array(gold_t)
-        self.lubricant_factor = as_array(lubricant_factor)
-        self.conductivity = as_array(conductivity)
-        self.T_min, self.T_max = as_array(T_min), as_array(T_max)
-        self.nu_0 = None if nu_0 is None else as_array(nu_0)
+        self.nu_1, self.nu_2 = float64_array(nu_1), float64_array(nu_2)
+        self.T_1, self.T_2 = float64_array(T_1), float64_array(T_2)
+        self.density_15, self.density_slope = (
+            float64_array(density_15),
+            float64_array(density_slope),
+        )
+        self.gold_s, self.gold_t = float64_array(gold_s), float64_array(gold_t)
+        self.lubricant_factor = float64_array(lubricant_factor)
+        self.conductivity = float64_array(conductivity)
+        self.T_min, self.T_max = float64_array(T_min), float64_array(T_max)
+        self.nu_0 = None if nu_0 is None else float64_array(nu_0)
         self.free_volume = free_volume
 
     def kinematic_viscosity(self, T: ArrayLike) -> Float[Array, "..."]:
@@ -189,7 +192,7 @@ class Lubricant(eqx.Module):
         From the law of viscosity and density against temperature, by differentiation. At the temperature
         where the line for the cold meets the other one it is that of the warm side.
         """
-        at = as_array(T)
+        at = float64_array(T)
         eta, fall = jax.jvp(self.viscosity, (at,), (-jnp.ones_like(at),))
         relative: Float[Array, "..."] = fall / eta
         return relative
@@ -322,7 +325,7 @@ class LubricantRecord:
     def build(self) -> Lubricant:
         """Return the numbers alone, for a computation."""
         values = {key: datum.value for key, datum in self._plain().items()}
-        volume = {key: as_array(datum.value) for key, datum in self.free_volume.items()}
+        volume = {key: float64_array(datum.value) for key, datum in self.free_volume.items()}
         return Lubricant(**values, free_volume=FreeVolume(**volume) if volume else None)
 
     def with_values(self, **values: float) -> LubricantRecord:
@@ -436,7 +439,7 @@ def demand_plausible_cold(record: LubricantRecord) -> None:
 
 
 def _viscosity(record: LubricantRecord, temperature: float) -> float:
-    return float(_kinematic_viscosity(record.build(), as_array(temperature)))
+    return float(_kinematic_viscosity(record.build(), float64_array(temperature)))
 
 
 @program

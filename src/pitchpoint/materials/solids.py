@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.data import Datum, check_positive, read_data, read_datum
 from pitchpoint.registry import known_as, unknown_name
 
@@ -61,10 +61,10 @@ class Solid(eqx.Module):
         density: ArrayLike,
         hardness: ArrayLike = np.nan,
     ) -> None:
-        self.young = as_array(young)
-        self.poisson = as_array(poisson)
-        self.density = as_array(density)
-        self.hardness = as_array(hardness)
+        self.young = float64_array(young)
+        self.poisson = float64_array(poisson)
+        self.density = float64_array(density)
+        self.hardness = float64_array(hardness)
 
     @property
     def plane_strain_modulus(self) -> Float[Array, "..."]:
@@ -276,7 +276,7 @@ class SolidRecord:
         _check_inside(self, temperature)
         places = [point.temperature for point in self.young_at]
         moduli = [point.young.value for point in self.young_at]
-        return jnp.interp(as_array(temperature), jnp.asarray(places), jnp.asarray(moduli))
+        return jnp.interp(float64_array(temperature), jnp.asarray(places), jnp.asarray(moduli))
 
 
 def celsius(temperature: float) -> str:

@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.input.remembered import remembering
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.material_tables import RoughnessTable
 
 __all__ = ["RQ_PER_RA", "Roughness", "composite_rq", "mean_ra", "roughness_of"]
@@ -74,8 +74,8 @@ class Roughness(eqx.Module):
     def __init__(
         self, *, ra_1: ArrayLike, ra_2: ArrayLike, rq_1: ArrayLike, rq_2: ArrayLike
     ) -> None:
-        self.ra_1, self.ra_2 = as_array(ra_1), as_array(ra_2)
-        self.rq_1, self.rq_2 = as_array(rq_1), as_array(rq_2)
+        self.ra_1, self.ra_2 = float64_array(ra_1), float64_array(ra_2)
+        self.rq_1, self.rq_2 = float64_array(rq_1), float64_array(rq_2)
 
     @classmethod
     def from_ra(cls, ra_1: ArrayLike, ra_2: ArrayLike | None = None) -> Roughness:
@@ -97,8 +97,8 @@ class Roughness(eqx.Module):
 
         From heights that are Gaussian, see `RQ_PER_RA`.
         """
-        rq_of_flank = as_array(rq_1)
-        rq_of_mate = rq_of_flank if rq_2 is None else as_array(rq_2)
+        rq_of_flank = float64_array(rq_1)
+        rq_of_mate = rq_of_flank if rq_2 is None else float64_array(rq_2)
         return cls(
             ra_1=rq_of_flank / RQ_PER_RA,
             ra_2=rq_of_mate / RQ_PER_RA,
@@ -109,7 +109,7 @@ class Roughness(eqx.Module):
     @classmethod
     def from_composite_rq(cls, rq: ArrayLike) -> Roughness:
         """Build from the composite Rq [m] of the pair, shared equally by the two flanks."""
-        return cls.from_rq(as_array(rq) / math.sqrt(2.0))
+        return cls.from_rq(float64_array(rq) / math.sqrt(2.0))
 
     @property
     def mean_ra(self) -> Float[Array, "..."]:

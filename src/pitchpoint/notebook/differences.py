@@ -14,7 +14,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
-from pitchpoint.runs.case import written
+from pitchpoint.runs.case import case_value
 
 __all__ = [
     "MADE",
@@ -143,8 +143,8 @@ def setting_of(
 
     def setting(value: float) -> tuple[str, Any]:
         if not every:
-            return key, written(key, value)
-        return key, written(key, [*every[:place], value, *every[place + 1 :]])
+            return key, case_value(key, value)
+        return key, case_value(key, [*every[:place], value, *every[place + 1 :]])
 
     return setting
 

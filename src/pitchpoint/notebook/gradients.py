@@ -32,7 +32,7 @@ from pitchpoint.notebook.differences import (
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case, CaseLike, as_case
-from pitchpoint.runs.run import FrictionChoice, own_law
+from pitchpoint.runs.run import FrictionChoice, with_user_law
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,7 +94,7 @@ def gradients(
     another form, such as the helix angle of a spur pair, and where a figure has a kink.
     """
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
-    base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
+    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     built = base.built({})
     names = [chosen.key(name) for name in ([by] if isinstance(by, str) else by)]
     if built.numbers or of not in FIGURES:

@@ -20,12 +20,12 @@ from pitchpoint.registry import nearest
 from pitchpoint.results.chosen_units import Choice, UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.labelled import Units, attributes, demand_units, labelled
 from pitchpoint.runs import run as runs
-from pitchpoint.runs.case import Case, CaseLike, written
+from pitchpoint.runs.case import Case, CaseLike, case_value
 from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import Outcome, Progress
 from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.report import write_report
-from pitchpoint.views.show import number
+from pitchpoint.views.show import number_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -107,7 +107,7 @@ class Result(Mapping[str, Outcome]):
 
         told = "".join(f"<li>{html.escape(text)}</li>" for text in self.warnings)
         with option_context("display.max_colwidth", None):
-            table = self.summary().to_html(na_rep="undefined", border=0, float_format=number)
+            table = self.summary().to_html(na_rep="undefined", border=0, float_format=number_text)
         parts = html.escape(", ".join(self.parts))
         title = f"<strong>{html.escape(self.title)}</strong>"
         return f"<div>{title}{table}<ul>{told}</ul><small>parts: {parts}</small></div>"
@@ -131,7 +131,7 @@ class Result(Mapping[str, Outcome]):
     def inputs(self) -> "pd.DataFrame":
         """Every input by key: value in SI with its unit, as shown, status, place in print, remark."""
         with shown_in(self._units):
-            return tables.by_variant(self, tables.inputs)
+            return tables.frames_by_variant(self, tables.inputs)
 
     @property
     def plot(self) -> Plots:
@@ -152,7 +152,7 @@ class Result(Mapping[str, Outcome]):
                 as text, "angle=arcmin"; those of the case by default.
         """
         with shown_in(self._units if units is None else unit_choice(units)):
-            return tables.by_variant(self, tables.summary)
+            return tables.frames_by_variant(self, tables.summary_frame)
 
     def dataset(self, part: str, *, units: Units = "si", variant: str | None = None) -> xr.Dataset:
         """A part of the result: every dimension with a coordinate, NaN where no teeth touch.
@@ -240,8 +240,8 @@ class Result(Mapping[str, Outcome]):
         """
         cases = {name: case().held[0] for name, case in self._origins.items()}
         if self._friction is not None:
-            cases = {name: runs.own_law(one, self._friction) for name, one in cases.items()}
-        runs.keep(self, cases, Path(folder), studies=self._studies, overwrite=overwrite)
+            cases = {name: runs.with_user_law(one, self._friction) for name, one in cases.items()}
+        runs.write_results(self, cases, Path(folder), studies=self._studies, overwrite=overwrite)
 
     def outcome(self, variant: str | None = None) -> Outcome:
         """That of a variant, of the first one by default.
@@ -301,8 +301,8 @@ def run(
         OSError: the disk is full, say; what was finished is on disk.
     """
     demand_arguments(settings=settings)
-    given = {key: written(key, value) for key, value in (settings or {}).items()}
-    outcomes = runs.run(
+    given = {key: case_value(key, value) for key, value in (settings or {}).items()}
+    outcomes = runs.run_case(
         case,
         folder=folder,
         only=only,
@@ -323,7 +323,7 @@ def open_result(folder: str | Path) -> Result:
     Raises:
         InputError: the folder holds no result.
     """
-    outcomes = runs.open_result(folder)
+    outcomes = runs.open_outcomes(folder)
     records = {one: Path(folder) / one / MANIFEST for one in outcomes}
     return Result(outcomes, {one: partial(_case, path, one, {}) for one, path in records.items()})
 

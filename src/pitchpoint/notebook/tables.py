@@ -13,15 +13,15 @@ from pitchpoint.cases.record import sources_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case
 from pitchpoint.runs.catalogue import entries
-from pitchpoint.runs.run import Outcome, describe, manifests
+from pitchpoint.runs.run import Outcome, manifests, uncomputed_manifests
 from pitchpoint.views import show
-from pitchpoint.views.inputs import words
+from pitchpoint.views.inputs import input_words
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-__all__ = ["by_variant", "cite", "headline", "inputs", "models", "summary"]
+__all__ = ["cite", "frames_by_variant", "headline", "inputs", "models", "summary_frame"]
 
 _FEW = 4
 
@@ -62,11 +62,11 @@ def _manifests(what: Any) -> list[Mapping[str, Any]]:
     if isinstance(what, Mapping) and all(isinstance(one, Outcome) for one in what.values()):
         return [one.manifest for one in what.values()]
     if isinstance(what, Case | Mapping):
-        return [*describe(what)]
+        return [*uncomputed_manifests(what)]
     return [*manifests(str(what))]
 
 
-def by_variant(
+def frames_by_variant(
     outcomes: Mapping[str, Outcome], frame: Callable[[Outcome], "pd.DataFrame"]
 ) -> "pd.DataFrame":
     """A frame of one variant, or those of several on top of each other under their names."""
@@ -87,7 +87,7 @@ def inputs(outcome: Outcome) -> "pd.DataFrame":
             "key": f"{row['table']}.{row['key']}".removesuffix("."),
             "value": row["value"],
             "unit": _unit(row["kind"]),
-            "shown": words(outcome, row["table"], row["key"]),
+            "shown": input_words(outcome, row["table"], row["key"]),
             **{name: row[name] for name in ("status", "where", "note")},
         }
         for row in outcome.manifest["inputs"]
@@ -100,7 +100,7 @@ def _unit(kind: Any) -> str:
     return units.si_unit(kind) if isinstance(kind, str) and kind else ""
 
 
-def summary(outcome: Outcome) -> "pd.DataFrame":
+def summary_frame(outcome: Outcome) -> "pd.DataFrame":
     """Main figures of one variant."""
     import pandas as pd
 
@@ -130,7 +130,7 @@ def _row(outcome: Outcome, data: "xr.Dataset", name: str) -> dict[str, Any]:
     values = show.displayed(variable, np.ravel(one.values))
     alone = dict.fromkeys(laws, float(values[0]))
     under = dict(zip(several, values.tolist(), strict=True)) if several else alone
-    return {"name": variable.long_name, "unit": show.unit(variable.display), **under}
+    return {"name": variable.long_name, "unit": show.display_unit(variable.display), **under}
 
 
 def headline(outcome: Outcome) -> str:

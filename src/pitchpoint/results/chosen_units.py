@@ -47,7 +47,10 @@ def choosable() -> list[str]:
         >>> "torque" in choosable(), "small angle" in choosable(), "count" in choosable()
         (True, True, False)
     """
-    return [*(kind for kind in units.kinds() if not units.plain(kind)), *map(_small, _SMALL)]
+    return [
+        *(kind for kind in units.kinds() if not units.allows_plain_number(kind)),
+        *map(_small, _SMALL),
+    ]
 
 
 def unit_choice(given: Any) -> dict[str, str]:

@@ -16,7 +16,7 @@ from pitchpoint.lubrication.ehl.patch.films import PatchFilms
 from pitchpoint.lubrication.ehl.patch.heat import TEMPERATURES
 from pitchpoint.lubrication.ehl.patch.transient import PatchMoment
 from pitchpoint.lubrication.ehl.solve import Ended, Films
-from pitchpoint.results.store import dataset, describe
+from pitchpoint.results.store import dataset, describe_variables
 from pitchpoint.results.variable import (
     Variable,
     deviation,
@@ -26,8 +26,7 @@ from pitchpoint.results.variable import (
     pressure,
     time,
 )
-from pitchpoint.status import Code
-from pitchpoint.status import told as told_of
+from pitchpoint.status import Code, solve_summary
 
 __all__ = ["film_dataset", "films_of_dataset", "march_dataset", "patch_dataset"]
 
@@ -200,9 +199,11 @@ def film_dataset(films: Films, dims: Sequence[str] | None = None) -> xr.Dataset:
         title="films",
         nodes=films.nodes,
         warnings=list(films.warnings),
-        solve=told_of(code, np.asarray(films.ended.reynolds), np.asarray(films.ended.iterations)),
+        solve=solve_summary(
+            code, np.asarray(films.ended.reynolds), np.asarray(films.ended.iterations)
+        ),
     )
-    describe(data, _OWN)
+    describe_variables(data, _OWN)
     sentences = {int(number): Code(int(number)).sentence for number in np.unique(code)}
     data["ended_code"].attrs["sentences"] = json.dumps(sentences)
     return data.set_coords("x")
@@ -244,7 +245,7 @@ def march_dataset(moments: Sequence[PatchMoment]) -> xr.Dataset:
         "newton_steps": [moment.ended.steps for moment in moments],
     }
     data = data.assign({name: ("time", np.array(values)) for name, values in counts.items()})
-    describe(data, _MARCH)
+    describe_variables(data, _MARCH)
     return data
 
 
@@ -278,14 +279,14 @@ def _over_patch(
         warnings=list(
             dict.fromkeys(warning for patch_film in films for warning in patch_film.warnings)
         ),
-        solve=told_of(
+        solve=solve_summary(
             *(
                 np.array([getattr(patch_film.ended, name) for patch_film in films])
                 for name in ("code", "reynolds", "steps")
             )
         ),
     )
-    describe(data, _PATCH | _PATCH_HEAT)
+    describe_variables(data, _PATCH | _PATCH_HEAT)
     return data
 
 

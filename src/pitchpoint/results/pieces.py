@@ -18,7 +18,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.store import load, save_image
 
-__all__ = ["ALONG", "StudyPieces", "Summary", "as_whole", "summary_of"]
+__all__ = ["ALONG", "StudyPieces", "Summary", "joined_pieces", "summary_of"]
 
 ALONG = "design"
 """Dimension along which pieces follow each other."""
@@ -167,7 +167,7 @@ def _holding(kinds: Sequence[np.dtype[Any]], pieces: int) -> np.dtype[Any]:
     return np.dtype(float) if whole else kind
 
 
-def as_whole(
+def joined_pieces(
     pieces: StudyPieces,
     summary: Summary,
     dims: Mapping[str, int],

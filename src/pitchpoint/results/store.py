@@ -27,8 +27,8 @@ from pitchpoint.status import DIRECT
 
 __all__ = [
     "dataset",
-    "demand_room",
-    "describe",
+    "demand_writable_folder",
+    "describe_variables",
     "fingerprint",
     "load",
     "make_folder",
@@ -67,7 +67,7 @@ def dataset(
     Args:
         variables: dimensions and values by name; names of `VARIABLES` get their attributes.
         coordinates: values by dimension.
-        solve: what became of the solves behind it, see `status.told`; kept as JSON.
+        solve: what became of the solves behind it, see `status.solve_summary`; kept as JSON.
         travels: members that travel in place of turning, whose quantities have other units.
         warnings: sentences on what is doubtful, see `doubts.stored`; None where a part has no place for any.
         attributes: strings and numbers; anything else is stored as JSON.
@@ -77,7 +77,7 @@ def dataset(
         coords=dict(coordinates),
     )
     described = VARIABLES.keys() & data.variables.keys()
-    describe(data, {name: VARIABLES[name].where(travels) for name in described})
+    describe_variables(data, {name: VARIABLES[name].where(travels) for name in described})
     data.attrs.update(
         {key: _attribute(value) for key, value in {"solve": solve, **attributes}.items()},
         **({} if warnings is None else stored(warnings)),
@@ -86,7 +86,7 @@ def dataset(
     return data
 
 
-def describe(data: xr.Dataset, variables: Mapping[str, Variable]) -> None:
+def describe_variables(data: xr.Dataset, variables: Mapping[str, Variable]) -> None:
     """Write unit, long name and symbol to those variables of a dataset that are described."""
     for name, values in data.variables.items():
         quantity = variables.get(str(name))
@@ -154,7 +154,7 @@ def make_folder(folder: Path) -> None:
         tempfile.TemporaryFile(dir=folder).close()
 
 
-def demand_room(folder: Path) -> None:
+def demand_writable_folder(folder: Path) -> None:
     """InputError if a folder cannot be made or written to: told before what takes long."""
     with _unwritable(folder):
         there = next(

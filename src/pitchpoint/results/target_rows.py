@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-__all__ = ["TargetRow", "counts", "in_words"]
+__all__ = ["TargetRow", "counts", "verdict_sentence"]
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ FITTED = ("calibrated", "fitted")
 """Kinds of numbers with which a constant, a reading or an input was found: that they are met tests little."""
 
 
-def in_words(rows: Iterable[TargetRow]) -> str:
+def verdict_sentence(rows: Iterable[TargetRow]) -> str:
     """How many numbers of the publication were met, and apart from them of an independent calculation."""
     of_both: dict[str, list[TargetRow]] = {}
     for row in rows:

@@ -12,13 +12,13 @@ from jaxtyping import Float
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.envelope import gear_envelope
-from pitchpoint.analyses.figures import covers
+from pitchpoint.analyses.figures import efficiency_coverage
 from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import apart, doubts_of
+from pitchpoint.doubts import doubts_of, ranked_doubts
 from pitchpoint.errors import ConvergenceError, InputError, visible
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.variable import (
@@ -33,8 +33,8 @@ from pitchpoint.results.variable import (
     torque,
     torsional_stiffness,
 )
-from pitchpoint.runs.case import CaseLike, held
-from pitchpoint.runs.designs import design_names, wanted
+from pitchpoint.runs.case import CaseLike, selected_variants
+from pitchpoint.runs.designs import design_names, resolved_reference
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Progress
 
@@ -244,10 +244,10 @@ def _named(cases: Sequence[CaseLike], names: Sequence[str] | None) -> dict[str, 
     variants: list[Variant] = []
     labels: list[str] = []
     for case in cases:
-        reference = wanted(str(case)) if isinstance(case, str | Path) else None
+        reference = resolved_reference(str(case)) if isinstance(case, str | Path) else None
         source = case if reference is None else reference.case
         only = [reference.variant] if reference and reference.variant else []
-        variants.append(held(source, only)[0])
+        variants.append(selected_variants(source, only)[0])
         labels.append(variants[-1].label if reference is None else str(case))
     labels = labels if names is None else [*names]
     for label in labels:
@@ -313,7 +313,7 @@ def _benched(name: str, variant: Variant) -> BenchedDrive:
     built = variant.built({})
     _demand_reducer(name, built)
     parts, failed = _computed(variant, PARTS)
-    remarks = [*apart([*unlikely(built, parts)])["implausible"]]
+    remarks = [*ranked_doubts([*unlikely(built, parts)])["implausible"]]
     if "torsion" not in parts and "torsion" not in failed:
         yielding = replace(variant, settings={**variant.settings, **YIELDING})
         by_teeth, of_torsion = _computed(yielding, ["torsion"])
@@ -494,7 +494,7 @@ def _scope(parts: Mapping[str, xr.Dataset]) -> str:
     data = parts.get("operation")
     if data is None:
         return ""
-    of = covers(data).partition(":")[0] or "whole drive"
+    of = efficiency_coverage(data).partition(":")[0] or "whole drive"
     lacks = data["mean_efficiency"].attrs.get("lacks")
     return f"{of}, without the {lacks}" if lacks else of
 

@@ -25,7 +25,7 @@ from pitchpoint.cases.keys import keys, quantity_at
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.validation import in_form, validate
 from pitchpoint.cases.variant import Variant
-from pitchpoint.cases.wishes import WISHES, answer
+from pitchpoint.cases.wishes import WISHES, wish_answer
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.table import SHIFT
@@ -35,7 +35,7 @@ from pitchpoint.registry import nearest
 from pitchpoint.runs.python_values import demand_arguments, plain_value
 from pitchpoint.runs.reading import variants_of
 
-__all__ = ["Case", "CaseLike", "as_case", "held", "in_si", "written"]
+__all__ = ["Case", "CaseLike", "as_case", "case_value", "in_si", "selected_variants"]
 
 _SHOWN = 4
 _LISTED = 6
@@ -121,7 +121,7 @@ class Case:
             return matches[0]
         if not matches:
             ends = dict.fromkeys(key.rpartition(".")[2] for key in _every_key(tree))
-            wishes = (answer((table, name), None, {}, ends) for table in WISHES)
+            wishes = (wish_answer((table, name), None, {}, ends) for table in WISHES)
             advice = next(filter(None, wishes), nearest(name, ends))
             raise InputError(f"there is no such key{advice}", key=shorten(name))
         listed = [*matches[:_LISTED], *["..."] * (len(matches) > _LISTED)]
@@ -180,7 +180,7 @@ class Case:
 
     def _with(self, key: str, value: Any) -> "Case":
         quantity = quantity_at(key, self._first.document().tree)
-        text = written(key, value)
+        text = case_value(key, value)
         if quantity is not None:
             _demand(quantity, text, key)
         changed_case = copy.copy(self)
@@ -208,7 +208,7 @@ def as_case(case: CaseLike) -> Case:
     return case if isinstance(case, Case) else Case(case)
 
 
-def held(
+def selected_variants(
     case: CaseLike,
     only: Sequence[str] = (),
     settings: Mapping[str, Any] | None = None,
@@ -227,7 +227,7 @@ def held(
     ]
 
 
-def written(key: str, value: Any) -> Any:
+def case_value(key: str, value: Any) -> Any:
     """A value of Python as a case file has it: numbers of a quantity with their SI unit.
 
     Args:

@@ -33,7 +33,7 @@ from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.wear.registry import WEAR_LAWS
 
-__all__ = ["entries", "figures", "matching"]
+__all__ = ["entries", "figures_by_law", "matching"]
 
 
 def matching(which: str) -> list[dict[str, str]]:
@@ -98,7 +98,7 @@ def entries() -> list[dict[str, str]]:
     return rows + [_record("material", solid, "") for solid in solids.catalogue().values()]
 
 
-def figures(outcome: Outcome) -> dict[str, Any]:
+def figures_by_law(outcome: Outcome) -> dict[str, Any]:
     """Main figures of one variant in SI, by law; None where a quantity is undefined."""
     manifest, every = outcome.manifest, ANALYSES.values()
     shown = [analysis.shown(outcome.parts) for analysis in every]

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from pitchpoint.cases.document import variants
-from pitchpoint.cases.library import find
+from pitchpoint.cases.library import find_case
 from pitchpoint.cases.record import is_record, is_result
 from pitchpoint.doubts import Doubt, as_doubt, of_designs
 from pitchpoint.errors import CollectedInputError, InputError
@@ -13,10 +13,10 @@ from pitchpoint.runs.optimise import demand_optimiser
 from pitchpoint.runs.run import forewarned
 from pitchpoint.runs.study import demand_study
 
-__all__ = ["check"]
+__all__ = ["check_case"]
 
 
-def check(
+def check_case(
     case: str, only: Sequence[str] = (), settings: Mapping[str, Any] | None = None
 ) -> list[str]:
     """What fails and what warns of a case before it is computed, the former first.
@@ -70,4 +70,4 @@ def _located(
 
 def _variants(case: str) -> Iterator[str]:
     """Variants of a case; an empty name for those of a result, which are checked together."""
-    yield from ("",) if is_result(case) or is_record(case) else variants(find(case)[1])
+    yield from ("",) if is_result(case) or is_record(case) else variants(find_case(case)[1])

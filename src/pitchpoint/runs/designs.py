@@ -11,7 +11,7 @@ import xarray as xr
 
 from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import variants
-from pitchpoint.cases.library import as_text, find, names
+from pitchpoint.cases.library import as_text, case_names, find_case
 from pitchpoint.cases.record import MANIFEST, is_record, is_result
 from pitchpoint.errors import InputError, shorten, visible
 from pitchpoint.input.quantities import shown
@@ -19,7 +19,7 @@ from pitchpoint.registry import nearest
 from pitchpoint.results.by_stage import STAGE
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import variable_of
-from pitchpoint.runs.run import Outcome, Progress, open_result, run
+from pitchpoint.runs.run import Outcome, Progress, open_outcomes, run_case
 from pitchpoint.units import si_unit
 
 __all__ = [
@@ -32,8 +32,8 @@ __all__ = [
     "differing_inputs",
     "folder_of",
     "main_results",
+    "resolved_reference",
     "shared_laws",
-    "wanted",
 ]
 
 DESIGNS = "designs"
@@ -60,17 +60,17 @@ class Wanted:
     @property
     def parts(self) -> tuple[str, ...]:
         """Names from the root down that may stand for it."""
-        if self.case in names():
+        if self.case in case_names():
             return (self.case,)
         path = Path(os.path.abspath(self.case))
         return path.parts[1:] if self.computed else path.with_suffix("").parts[1:]
 
 
-def wanted(reference: str) -> Wanted:
+def resolved_reference(reference: str) -> Wanted:
     """What a reference means: `case`, `case@variant` where no file has that name, or the folder of a variant.
 
     Example:
-        >>> wanted("pair.toml@physical")
+        >>> resolved_reference("pair.toml@physical")
         Wanted(case='pair.toml', variant='physical')
     """
     folder = Path(reference)
@@ -100,7 +100,7 @@ def designs(
     Raises:
         InputError: anything wrong with a reference or its case; a design that is named twice.
     """
-    every = [design for reference in references for design in _each(wanted(reference))]
+    every = [design for reference in references for design in _each(resolved_reference(reference))]
     for design in every:
         if every.count(design) > 1:
             raise InputError(f"{shown(_told(design))} was named twice; name each design once")
@@ -116,7 +116,7 @@ def designs(
         for case, title in titles.items()
     }
     alone = {case for case in titles if sum(design.case == case for design in every) == 1}
-    with_variant = {design.case for design in map(wanted, references) if design.variant}
+    with_variant = {design.case for design in map(resolved_reference, references) if design.variant}
     return {
         titles[design.case]
         + ("" if design.case in alone - with_variant else f"@{design.variant}"): outcomes[
@@ -128,7 +128,7 @@ def designs(
 
 def folder_of(references: Sequence[str], root: Path) -> Path:
     """Folder of a comparison under that of all results, named after its designs."""
-    every = [wanted(reference) for reference in references]
+    every = [resolved_reference(reference) for reference in references]
     titles = design_names(list(dict.fromkeys(design.case for design in every)))
     labels = [
         titles[design.case] + (f"@{design.variant}" if design.variant else "") for design in every
@@ -153,11 +153,11 @@ def _each(one: Wanted) -> Iterator[Wanted]:
 
 def _variants(one: Wanted) -> list[str]:
     if one.computed:
-        return [*open_result(one.case)]
+        return [*open_outcomes(one.case)]
     if is_record(one.case):
         message = f"is the record of a result; name its folder, without {MANIFEST}"
         raise InputError(message, file=visible(as_text(one.case)))
-    return variants(find(one.case)[1])
+    return variants(find_case(one.case)[1])
 
 
 def _results(
@@ -170,8 +170,8 @@ def _results(
 ) -> Mapping[str, Outcome]:
     """Results of some variants of one case, by variant."""
     if Wanted(case).computed:
-        return open_result(case)
-    return run(case, folder=folder, only=chosen, overwrite=overwrite, progress=progress)
+        return open_outcomes(case)
+    return run_case(case, folder=folder, only=chosen, overwrite=overwrite, progress=progress)
 
 
 def design_names(cases: Sequence[str]) -> dict[str, str]:

@@ -21,12 +21,12 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.results.rounding import ROUNDING
-from pitchpoint.runs.case import Case, CaseLike, written
+from pitchpoint.runs.case import Case, CaseLike, case_value
 from pitchpoint.runs.jobs import Job
 from pitchpoint.runs.run import Outcome, Progress, run_variant
 from pitchpoint.runs.study import study
 
-__all__ = ["MOST", "Axis", "Explored", "explore", "usual"]
+__all__ = ["MOST", "Axis", "Explored", "explore", "usual_keys"]
 
 MOST = 600
 """Points of a grid that one page holds."""
@@ -131,7 +131,7 @@ def explore(
     whole_case = Case(case, variant=variant) if not isinstance(case, Case) or variant else case
     chosen = whole_case.set(settings or {})
     base = chosen.held[0].computed
-    axes = tuple(_given(chosen, over) if over else usual(base))
+    axes = tuple(_given(chosen, over) if over else usual_keys(base))
     count = prod(len(axis.values) for axis in axes)
     if not axes or count > MOST:
         raise InputError(
@@ -152,7 +152,7 @@ def explore(
     return Explored(own_design, axes, figures, seen, refused, errors, midpoints)
 
 
-def usual(variant: Variant) -> Iterator[Axis]:
+def usual_keys(variant: Variant) -> Iterator[Axis]:
     """Keys that are explored where none are given, those that change the gears first.
 
     Neighbours of one design have its contacts in common, so that the speed runs fastest.
@@ -262,7 +262,7 @@ def _seen(
     progress: Progress,
 ) -> Iterator[T | None]:
     """What is read at every point; the sentence of those that cannot be computed goes into `refused`."""
-    texts = [[*written(axis.key, axis.values)] for axis in axes]
+    texts = [[*case_value(axis.key, axis.values)] for axis in axes]
     for number, row in enumerate(product(*texts)):
         try:
             design = read(*_computed(variant, dict(zip((a.key for a in axes), row, strict=True))))

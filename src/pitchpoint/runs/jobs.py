@@ -15,7 +15,7 @@ from pitchpoint.errors import Complaints, InputError, shorten
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 
-__all__ = ["Job", "chosen_jobs", "job_of", "jobs", "with_read"]
+__all__ = ["Job", "chosen_jobs", "job_of", "jobs", "with_parts_read"]
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def chosen_jobs(variant: Variant, studies: Mapping[str, Study], names: Sequence[
     if isinstance(names, str) or not names:
         advice = 'analyses are a list of names of parts, ["operation", "cycle"]'
         raise InputError(f"{shown(names)} was given; {advice}", file=variant.name)
-    chosen = jobs(variant, studies, [*with_read(names)])
+    chosen = jobs(variant, studies, [*with_parts_read(names)])
     if missing := {*names} - {job.name for job in chosen}:
         every = [job.name for job in jobs(variant, studies)]
         for name in sorted(missing, key=[*names].index):
@@ -119,14 +119,14 @@ def chosen_jobs(variant: Variant, studies: Mapping[str, Study], names: Sequence[
     return chosen
 
 
-def with_read(names: Iterable[str]) -> set[str]:
+def with_parts_read(names: Iterable[str]) -> set[str]:
     """Names of parts, with those of the parts that they are computed of.
 
     Args:
         names: of parts and studies.
 
     Example:
-        >>> sorted(with_read(["duty"]))
+        >>> sorted(with_parts_read(["duty"]))
         ['duty', 'four_quadrants']
     """
     analyses = dict(ANALYSES)

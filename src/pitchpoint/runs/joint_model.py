@@ -39,7 +39,7 @@ __all__ = [
     "law_of",
     "map_of_output",
     "part_of_map",
-    "quantity_of",
+    "si_quantity",
 ]
 
 LEAST_WAVE = 0.01
@@ -383,7 +383,7 @@ def joint_model(
     ratio, speed = _ratio(record), float(data["output_speed"].max())
     travels = [*map(str, record["travels"])]
     parts, lacks = _parts(outcome, name, ratio, float(data.attrs["load"]))
-    rotor = quantity_of(rotor_inertia, "kg" if "driver" in travels else "kg m2", "rotor_inertia")
+    rotor = si_quantity(rotor_inertia, "kg" if "driver" in travels else "kg m2", "rotor_inertia")
     if rotor is None:
         lacks["rotor_inertia"] = "that of the motor was not given (rotor_inertia)"
     return JointModel(
@@ -456,7 +456,7 @@ def _between(
     """The two ends of a range within an axis."""
     if text is None:
         return axis
-    ends = [quantity_of(part.strip(), unit, key) or 0.0 for part in text.split(":")]
+    ends = [si_quantity(part.strip(), unit, key) or 0.0 for part in text.split(":")]
     if len(ends) != 2:
         raise InputError(
             f'{shown(text)} is no range; write "LEAST:LARGEST", each with its unit', key=key
@@ -479,7 +479,7 @@ def _between(
     return max(ends[0], axis[0]), min(ends[1], axis[1])
 
 
-def quantity_of(value: Any, unit: str, key: str) -> float | None:
+def si_quantity(value: Any, unit: str, key: str) -> float | None:
     """A quantity of somebody's in SI, not negative; None where there is none.
 
     Args:
@@ -491,7 +491,7 @@ def quantity_of(value: Any, unit: str, key: str) -> float | None:
         InputError: it is no such quantity.
 
     Example:
-        >>> quantity_of("0.3 kg cm2", "kg m2", "rotor_inertia")
+        >>> si_quantity("0.3 kg cm2", "kg m2", "rotor_inertia")
         3e-05
     """
     if value is None:

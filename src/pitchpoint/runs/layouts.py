@@ -21,7 +21,7 @@ from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.labelled import Units
-from pitchpoint.runs.case import written
+from pitchpoint.runs.case import case_value
 
 __all__ = [
     "DRAWN",
@@ -74,10 +74,10 @@ class StudyAxis:
             quantity = quantity_at(key, variant.document().tree)
             if key.partition(".")[0] not in SWEPT:
                 raise InputError(f"cannot be studied; keys of {', '.join(SWEPT)} can")
-            listed, distribution = written(key, values), "uniform"
+            listed, distribution = case_value(key, values), "uniform"
             if isinstance(listed, dict):
                 listed, distribution = _of_range(listed, quantity)
-                listed = written(key, listed)
+                listed = case_value(key, listed)
             if not isinstance(listed, list) or not listed:
                 raise InputError(
                     f"{shown(listed)} was given where a list of values belongs, or a table of start and stop"
@@ -142,9 +142,9 @@ class StudyAxis:
             share = 0.5 + ndtri(least + share * (1.0 - 2.0 * least)) / (2.0 * DEVIATIONS)
         if self.quantity is not None and self.quantity.whole:
             return [
-                *written(self.key, np.minimum(low + np.floor(share * (high - low + 1.0)), high))
+                *case_value(self.key, np.minimum(low + np.floor(share * (high - low + 1.0)), high))
             ]
-        return [*written(self.key, low + share * (high - low))]
+        return [*case_value(self.key, low + share * (high - low))]
 
 
 _OF_RANGE = ("start", "stop", "count", "distribution")

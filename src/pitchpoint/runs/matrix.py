@@ -20,7 +20,7 @@ from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.tables import tag
 from pitchpoint.runs.run import load_case
 
-__all__ = ["matrix", "page"]
+__all__ = ["matrix", "matrix_page"]
 
 _SEVERAL, _PLANETARY = (
     resources.files("pitchpoint.cases") / f"{name}.toml" for name in ("stages", "planetary")
@@ -123,7 +123,7 @@ def _why_not(analysis: Analysis | Several, cases: Sequence[Ready]) -> str:
     return "yes" if None in reasons else str(reasons[0])
 
 
-def page() -> str:
+def matrix_page() -> str:
     """The matrix as a page of the documentation: marks, and below them each reason once."""
     rows = matrix()
     _, title, *columns = rows[0]

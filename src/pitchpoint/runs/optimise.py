@@ -11,7 +11,7 @@ import numpy as np
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.strength import STRENGTH
-from pitchpoint.cases.handed_over import hand_over
+from pitchpoint.cases.handed_over import write_case_copy
 from pitchpoint.cases.record import CASE
 from pitchpoint.cases.study_tables import OptimiseTable
 from pitchpoint.cases.validation import validate, with_meshes
@@ -35,7 +35,7 @@ from pitchpoint.runs.optimum_task import (
     optimiser_task,
 )
 from pitchpoint.runs.python_values import demand_arguments
-from pitchpoint.runs.run import FrictionChoice, Progress, own_law, run
+from pitchpoint.runs.run import FrictionChoice, Progress, run_case, with_user_law
 from pitchpoint.runs.sought_figures import SoughtFigure, value_in
 
 __all__ = ["Optimum", "demand_optimiser", "folder_of_optimum", "optimise", "table_of_optimiser"]
@@ -149,7 +149,7 @@ def optimise(
         law: friction law of the case under which results are meant, the first one by default.
         starts: evenly spread designs to begin with; 16 for each key between ends, 256 at most, by default.
         variant: of the case, the first one by default.
-        friction: laws of one's own, see `run`.
+        friction: laws of one's own, see `run_case`.
         folder: where the best design goes as a case file, and every design that is computed as a line of a
             table, as soon as it is; nothing is written by default.
         overwrite: True to replace both files.
@@ -179,7 +179,7 @@ def optimise(
     demand_arguments(variant=variant, friction=friction, folder=folder, overwrite=overwrite)
     held = as_case(case)
     chosen = Case(held, variant=held.variants[0] if variant is None else variant)
-    base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
+    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     given: dict[str, Any] = {
         "vary": vary,
         "minimise": minimise,
@@ -276,7 +276,7 @@ def _solved(
     changes = _written_out(task, combination, point)
     best, warnings = _ran(task, changes, columns, search.spread)
     if folder is not None and not task.base.own:
-        hand_over(task.base.computed.document(**changes), folder)
+        write_case_copy(task.base.computed.document(**changes), folder)
     return _optimum(
         task,
         changes=changes,
@@ -437,9 +437,9 @@ def _ran(
     parts = ["operation", *(["strength"] if STRENGTH.why_not(task.built) is None else [])]
     parts += [one.part for one in task.figures if one.part]
     with TemporaryDirectory() as place:
-        hand_over(task.base.computed.document(**changes), Path(place))
+        write_case_copy(task.base.computed.document(**changes), Path(place))
         file = str(Path(place) / CASE)
-        ran = run(file, analyses=[*dict.fromkeys(parts)], friction=task.friction)
+        ran = run_case(file, analyses=[*dict.fromkeys(parts)], friction=task.friction)
     (outcome,) = ran.values()
     best = {one.name: value_in(outcome, one, task.law) for one in task.figures}
     again = task.columns({name: np.array([value]) for name, value in best.items()})[0]

@@ -27,10 +27,10 @@ from pitchpoint.efficiency.gradients import figure_gradient
 from pitchpoint.errors import Complaints, ConvergenceError, InputError, PitchpointError
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
-from pitchpoint.runs.case import Case, written
+from pitchpoint.runs.case import Case, case_value
 from pitchpoint.runs.layouts import StudyAxis
 from pitchpoint.runs.optimum_search import STEP, ConstrainedSearch
-from pitchpoint.runs.run import FrictionChoice, Outcome, run
+from pitchpoint.runs.run import FrictionChoice, Outcome, run_case
 from pitchpoint.runs.sought_figures import SoughtFigure, value_in, values_of_study
 
 __all__ = ["DESIGNS_FILE", "OptimiserTask", "ResultLimit", "VariedKey", "optimiser_task"]
@@ -169,7 +169,7 @@ class OptimiserTask:
             {
                 **combination,
                 **{
-                    one.key: written(one.key, one.value(float(share)))
+                    one.key: case_value(one.key, one.value(float(share)))
                     for one, share in zip(self.varied, row, strict=True)
                 },
             }
@@ -204,7 +204,7 @@ class OptimiserTask:
     def outcome(self, change: Mapping[str, Any], parts: Sequence[str]) -> Outcome:
         """A run of a design, of some of its parts."""
         names = [self.base.variant]
-        ran = run(
+        ran = run_case(
             self.case, only=names, analyses=parts, settings={**change}, friction=self.friction
         )
         return ran[self.base.variant]

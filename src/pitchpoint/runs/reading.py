@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from pitchpoint.cases.document import read, variants
-from pitchpoint.cases.library import as_text, find, path_of
+from pitchpoint.cases.document import read_tables, variants
+from pitchpoint.cases.library import as_text, case_path, find_case
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError, shorten, visible
@@ -30,8 +30,8 @@ def variants_of(
     if is_record(case):
         held = _recorded(Path(case), own, settings or {})
     else:
-        name, tree = find(case)
-        held = Variant(tree, name, "", folder=path_of(case).parent)
+        name, tree = find_case(case)
+        held = Variant(tree, name, "", folder=case_path(case).parent)
     chosen = only or variants(dict(held.tree))
     return [
         replace(held, variant=variant, settings=dict(settings or {}), own=own) for variant in chosen
@@ -65,7 +65,7 @@ def _handed_over(folder: Path, own: ChosenLaws, settings: Mapping[str, Any]) -> 
         return _recorded(folder / MANIFEST, own, settings)
     record = Manifest.read(folder / MANIFEST)
     name = visible(as_text(f"{folder.name}/{CASE}"))
-    tree = {"variants": {folder.name: read(path)}}
+    tree = {"variants": {folder.name: read_tables(path)}}
     warnings = tuple(record.warning)
     return Variant(tree, name, folder.name, recorded=record.case, warnings=warnings, folder=folder)
 

@@ -25,15 +25,15 @@ from pitchpoint.cases import inputs
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document
-from pitchpoint.cases.handed_over import FILES, hand_over
-from pitchpoint.cases.library import names
+from pitchpoint.cases.handed_over import FILES, write_case_copy
+from pitchpoint.cases.library import case_names
 from pitchpoint.cases.loss_sets import set_sources
 from pitchpoint.cases.record import CASE, MANIFEST, OUTPUT, RUN, Manifest, Record, is_record
 from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
-from pitchpoint.citations import cite
-from pitchpoint.doubts import apart, as_doubt, concerns, doubts_of
+from pitchpoint.citations import citation_text
+from pitchpoint.doubts import as_doubt, concerns, doubts_of, ranked_doubts
 from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.efficiency.drag_tables import Loss
 from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
@@ -41,7 +41,7 @@ from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
-from pitchpoint.lubrication.conditions import arguments
+from pitchpoint.lubrication.conditions import law_arguments
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
 from pitchpoint.lubrication.registry import (
     FILM_THICKNESS,
@@ -66,8 +66,8 @@ from pitchpoint.results.store import (
     write_text,
 )
 from pitchpoint.results.target_rows import TargetRow
-from pitchpoint.runs.case import Case, CaseLike, as_case, held
-from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs, with_read
+from pitchpoint.runs.case import Case, CaseLike, as_case, selected_variants
+from pitchpoint.runs.jobs import Job, chosen_jobs, job_of, jobs, with_parts_read
 from pitchpoint.runs.python_values import demand_arguments
 
 if TYPE_CHECKING:
@@ -77,14 +77,14 @@ __all__ = [
     "FrictionChoice",
     "Outcome",
     "Progress",
-    "keep",
     "mark_of",
-    "open_result",
-    "own_law",
+    "open_outcomes",
     "pieces_of",
-    "run",
+    "run_case",
     "run_piece",
     "run_variant",
+    "with_user_law",
+    "write_results",
 ]
 
 FrictionChoice = Callable[..., Any] | Sequence[str | Callable[..., Any]]
@@ -156,7 +156,7 @@ class Outcome:
         """Add sentences to what is implausible, and to the warnings: as far as parts are there for them."""
         self.doubts += sentences
         there = {str(name) for part in self.parts.values() for name in part}
-        by_kind = apart(text for text in self.doubts if concerns(text, there))
+        by_kind = ranked_doubts(text for text in self.doubts if concerns(text, there))
         briefs = [as_doubt(text).brief for sentences in by_kind.values() for text in sentences]
         self.note(**by_kind, briefs=briefs)
 
@@ -171,7 +171,7 @@ def _noted(make: Callable[[], dict[str, Any]], entries: Mapping[str, Any]) -> di
 
 
 @double_precision()
-def run(
+def run_case(
     case: CaseLike,
     *,
     folder: str | Path | None = None,
@@ -196,7 +196,7 @@ def run(
     )
     source = case if isinstance(case, str) else as_case(case)
     laws, named = _chosen(friction)
-    variants = held(source, only, {**(settings or {}), **named}, laws)
+    variants = selected_variants(source, only, {**(settings or {}), **named}, laws)
     work = {
         variant.variant: (variant, _jobs(variant, studies or {}, analyses)) for variant in variants
     }
@@ -292,7 +292,7 @@ def _of_design(variant: Variant, built: Ready) -> list[str]:
     return [*variant.warnings, *built.warnings, *built.heated]
 
 
-def own_law(variant: Variant, friction: FrictionChoice) -> Variant:
+def with_user_law(variant: Variant, friction: FrictionChoice) -> Variant:
     """The variant under friction laws of the user's own, with others by name."""
     laws, named = _chosen(friction)
     return replace(variant, own=laws, settings={**variant.settings, **named})
@@ -307,7 +307,7 @@ def _hand_over(variant: Variant, title: str, folder: Path, studies: Mapping[str,
     if not _measured(variant):
         tree = {key: table for key, table in document.tree.items() if key != "targets"}
         document = replace(document, tree=tree)
-    hand_over(document, folder, title=title, studies=studies)
+    write_case_copy(document, folder, title=title, studies=studies)
 
 
 _LARGEST_OF_OWN = 1.0
@@ -332,7 +332,7 @@ def _chosen(friction: FrictionChoice | None) -> tuple[ChosenLaws, dict[str, Any]
 
 def _own(function: Callable[..., Any]) -> FrictionLaw:
     """A user's function as a law; InputError if it asks for what is no condition, or is not JAX."""
-    wanted, _ = arguments(function)
+    wanted, _ = law_arguments(function)
     name = getattr(function, "__name__", "own")
     name = "own_law" if name == "<lambda>" else name
     _demand_traceable(function, wanted, name)
@@ -353,8 +353,8 @@ def _demand_traceable(function: Callable[..., Any], wanted: Sequence[str], name:
         ) from None
 
 
-def open_result(folder: str | Path) -> dict[str, Outcome]:
-    """Outcomes of a folder that `run` wrote, by variant.
+def open_outcomes(folder: str | Path) -> dict[str, Outcome]:
+    """Outcomes of a folder that `run_case` wrote, by variant.
 
     Raises:
         InputError: the folder holds no result.
@@ -374,7 +374,7 @@ def open_result(folder: str | Path) -> dict[str, Outcome]:
 
 
 @double_precision()
-def keep(
+def write_results(
     outcomes: Mapping[str, Outcome],
     cases: Mapping[str, Variant],
     folder: Path,
@@ -409,20 +409,20 @@ def manifests(result: str) -> list[dict[str, Any]]:
     """Manifests of a result, one for each variant, or of a case that has not been computed.
 
     Args:
-        result: folder that `run` wrote, manifest in it, name of a shipped case, or a file.
+        result: folder that `run_case` wrote, manifest in it, name of a shipped case, or a file.
 
     Raises:
         InputError: it is none of these.
     """
-    folder, shipped = Path(result), result in names()
+    folder, shipped = Path(result), result in case_names()
     if is_record(result) and folder.is_file():
         return [Manifest.read(folder).model_dump()]
     if not shipped and not os.path.exists(folder):
-        hint = nearest(result, dict.fromkeys(names()))
+        hint = nearest(result, dict.fromkeys(case_names()))
         raise InputError(f"is neither a result nor a case of pitchpoint{hint}", file=result)
     if folder.is_dir() and (not shipped or (folder / RUN).is_file()):
-        return [outcome.manifest for outcome in open_result(folder).values()]
-    return describe(result)
+        return [outcome.manifest for outcome in open_outcomes(folder).values()]
+    return uncomputed_manifests(result)
 
 
 @double_precision()
@@ -440,11 +440,11 @@ def load_case(
         InputError: anything wrong with the input.
     """
     demand_arguments(variant=variant)
-    return held(case, [variant] if variant else [], settings)[0].built({})
+    return selected_variants(case, [variant] if variant else [], settings)[0].built({})
 
 
 @double_precision()
-def describe(
+def uncomputed_manifests(
     case: CaseLike,
     only: Sequence[str] = (),
     *,
@@ -457,13 +457,13 @@ def describe(
         InputError: anything wrong with the input that shows before the computation.
     """
     demand_arguments(studies=studies)
-    variants = held(case, only, settings)
+    variants = selected_variants(case, only, settings)
     for variant in variants:
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
     built = [(variant, variant.built({})) for variant in variants]
     return [
         _manifest(*prepared, inputs.input_rows(prepared[1], prepared[0].document(), studies))
-        | apart(_of_design(*prepared))
+        | ranked_doubts(_of_design(*prepared))
         for prepared in built
     ]
 
@@ -478,11 +478,11 @@ def forewarned(
         InputError: anything wrong with the input that shows before the computation.
     """
     sentences: list[str] = []
-    for variant in held(case, only, settings):
+    for variant in selected_variants(case, only, settings):
         _jobs(variant, {})  # made, not computed: a wrong study shows now
         built = variant.built({})
         sentences += [*_of_design(variant, built), *_too_weak(built)]
-    return apart(sentences)
+    return ranked_doubts(sentences)
 
 
 def _too_weak(built: Ready) -> list[str]:
@@ -490,7 +490,9 @@ def _too_weak(built: Ready) -> list[str]:
     if STRENGTH.why_not(built):
         return []
     part = STRENGTH.compute(built, {}, _silent)
-    return apart([*doubts_of(part.attrs), *unlikely(built, {"strength": part})])["implausible"]
+    return ranked_doubts([*doubts_of(part.attrs), *unlikely(built, {"strength": part})])[
+        "implausible"
+    ]
 
 
 def _silent(done: int, doing: str = "") -> None:
@@ -511,7 +513,7 @@ def compare_case(
     rows = _kept_rows(case, variant)
     if rows is not None:
         return rows
-    variants = held(case, [variant] if variant else [])
+    variants = selected_variants(case, [variant] if variant else [])
     published = next(
         (option for option in variants if option.variant == "as_published"), variants[0]
     )
@@ -522,7 +524,7 @@ def _kept_rows(case: str, variant: str | None) -> tuple[str, str, list[TargetRow
     """What a finished result of these programs says of a variant; None for anything else."""
     if not os.path.isfile(Path(case) / RUN):
         return None
-    outcomes = open_result(case)
+    outcomes = open_outcomes(case)
     name = variant or ("as_published" if "as_published" in outcomes else next(iter(outcomes)))
     outcome = outcomes.get(name)
     if outcome is None or not outcome.rows or not outcome.manifest["finished"]:
@@ -545,7 +547,7 @@ def rows_of(
     if not built.case.targets:
         message = "has no targets to compare with; give several designs, or a published case"
         raise InputError(message, file=made.name)
-    needed = with_read({target.reads for target in built.case.targets})
+    needed = with_parts_read({target.reads for target in built.case.targets})
     work = jobs(made, {})
     demand_parts(built.case.targets, [job.name for job in work], made.name)
     parts: dict[str, xr.Dataset] = {}
@@ -576,7 +578,7 @@ def run_piece(
         InputError: anything wrong with the input, or no such part.
         ConvergenceError: a balance that was not found.
     """
-    ready = held(case, [variant] if variant else [])[0]
+    ready = selected_variants(case, [variant] if variant else [])[0]
     job = job_of(ready, str(description.get("analysis", "")))
     with _told_of(ready):
         return job.compute(description) if last is None else job.onward(last)
@@ -585,7 +587,7 @@ def run_piece(
 @double_precision()
 def pieces_of(case: str, *, variant: str | None = None) -> list[Piece]:
     """Descriptions of all pieces of a case, each less than 1 kB of plain data, see `run_piece`."""
-    ready = held(case, [variant] if variant else [])[0]
+    ready = selected_variants(case, [variant] if variant else [])[0]
     return [piece for job in jobs(ready, {}) for piece in job.pieces]
 
 
@@ -906,7 +908,9 @@ def _sources(built: Ready, models: Mapping[str, Any], document: Document) -> lis
     uses: dict[str, dict[str, None]] = {}
     for key, of in cited:
         uses.setdefault(key, {})[of] = None
-    return [{"key": key, "text": cite(key), "of": ", ".join(of)} for key, of in uses.items()]
+    return [
+        {"key": key, "text": citation_text(key), "of": ", ".join(of)} for key, of in uses.items()
+    ]
 
 
 def _loss_tables(document: Document) -> list[Any]:

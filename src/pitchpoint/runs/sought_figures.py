@@ -13,7 +13,7 @@ from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
-from pitchpoint.registry import alike, nearest
+from pitchpoint.registry import nearest, similar_names
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
@@ -100,7 +100,7 @@ def _part_with(part: str, variable: str, built: Ready, at_once: Sequence[str]) -
             f"{shown(variable)} is no result of this case: {next(iter(reasons.values()))}"
         )
     every = [*at_once, *(figure for entry in entries.values() for figure in entry.main)]
-    near = alike(variable, every)[:_NEAR]
+    near = similar_names(variable, every)[:_NEAR]
     meant = f"did you mean {' or '.join(near)}?" if near else _WHICH
     raise InputError(f"{shown(variable)} is no result; {meant}")
 

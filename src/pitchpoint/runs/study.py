@@ -13,8 +13,8 @@ import xarray as xr
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.designs import TOGETHER
-from pitchpoint.analyses.studies import demand_films, demand_one
-from pitchpoint.analyses.summaries import balance_codes, few
+from pitchpoint.analyses.studies import demand_one, refuse_film_sweep
+from pitchpoint.analyses.summaries import balance_codes, first_warnings
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.study_tables import StudyTable, Sweep
 from pitchpoint.cases.validation import validate, with_meshes
@@ -24,16 +24,16 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.remembered import remembering
 from pitchpoint.results.chosen_units import shown_in, unit_choice
 from pitchpoint.results.labelled import Units, demand_units, in_units, showing
-from pitchpoint.results.pieces import ALONG, StudyPieces, Summary, as_whole, summary_of
+from pitchpoint.results.pieces import ALONG, StudyPieces, Summary, joined_pieces, summary_of
 from pitchpoint.results.store import make_folder, sole_writer, sweep
 from pitchpoint.runs.case import Case, CaseLike, as_case
 from pitchpoint.runs.described import StudyDescription
 from pitchpoint.runs.layouts import How, StudyLayout, layout_of
 from pitchpoint.runs.python_values import demand_arguments
-from pitchpoint.runs.run import FrictionChoice, Progress, own_law
+from pitchpoint.runs.run import FrictionChoice, Progress, with_user_law
 from pitchpoint.runs.tolerances import with_tolerances
 from pitchpoint.runs.workers import pieces_of_workers
-from pitchpoint.status import told
+from pitchpoint.status import solve_summary
 
 __all__ = [
     "PIECE",
@@ -133,7 +133,7 @@ def study(
     }
     given |= {"folder": folder, "piece": piece, "workers": workers, "scheduler": scheduler}
     plan = StudyPlan(**_completed(given, chosen))
-    base = chosen.held[0] if friction is None else own_law(chosen.held[0], friction)
+    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     base, layout = _laid_out(chosen, base, plan)
     where = None if plan.folder is None else Path(plan.folder)
     _demand_place(layout, base, where, plan.workers, plan.scheduler)
@@ -265,7 +265,7 @@ def _demand_meant(base: Variant, layout: StudyLayout) -> None:
     built = base.built({})
     for key, axis in layout.axes.items():
         demand_one(base, Sweep(key=key, values=tuple(axis.values[:1])), "study")
-        demand_films(built, base, key, "study")
+        refuse_film_sweep(built, base, key, "study")
 
 
 def _demand_place(
@@ -379,7 +379,7 @@ def _opened(
         first = next(iter(summary.reasons), "")
         told = f"none of {pieces.count} designs can be computed; the first one: {first}"
         raise InputError(told, file=name)
-    data = as_whole(pieces, summary, layout.dims, shown).assign_attrs(_attributes(summary))
+    data = joined_pieces(pieces, summary, layout.dims, shown).assign_attrs(_attributes(summary))
     if ALONG in layout.dims:
         data = data.assign_coords({ALONG: np.arange(pieces.count)})
     else:
@@ -403,7 +403,7 @@ def _attributes(summary: Summary) -> dict[str, Any]:
     """Attributes of all designs: how their solves ended, and what is doubtful."""
     codes = np.repeat([*summary.codes], [*summary.codes.values()])
     most = {"residual": summary.residual, "iterations": summary.iterations}
-    solve = json.dumps({**told(codes), **most})
+    solve = json.dumps({**solve_summary(codes), **most})
     reasons = dict([*summary.reasons.items()][:MOST_REASONS])
-    doubts = stored(few([*summary.warnings]))
+    doubts = stored(first_warnings([*summary.warnings]))
     return {**summary.attributes, **doubts, "solve": solve, "reasons": json.dumps(reasons)}

@@ -9,7 +9,7 @@ import numpy as np
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import CylindricalGears
-from pitchpoint.runs.case import written
+from pitchpoint.runs.case import case_value
 
 __all__ = ["with_tolerances"]
 
@@ -49,7 +49,7 @@ def with_tolerances(variant: Variant, distribution: str) -> tuple[Variant, dict[
                 key=_KEY,
             )
         for key, value in _held(gears, pair).items():
-            settings[f"{table}.{key}"] = written(f"{table}.{key}", value)
+            settings[f"{table}.{key}"] = case_value(f"{table}.{key}", value)
         for key, (low, high) in limits.items():
             of_key = "uniform" if key.endswith("seed") else distribution
             ranges[f"{table}.{key}"] = {"start": low, "stop": high, "distribution": of_key}

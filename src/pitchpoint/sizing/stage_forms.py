@@ -23,7 +23,7 @@ from pitchpoint.cases.built_drive import Ready
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import PitchPoint, pitch_point
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
-from pitchpoint.gears.rated_pair import RatedPair, bare, rated_pair
+from pitchpoint.gears.rated_pair import RatedPair, bare_pair, rated_pair
 from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2
 from pitchpoint.programs import program
 from pitchpoint.runs.run import load_case
@@ -457,7 +457,7 @@ def _rows(tree: Any, where: Any) -> Any:
 
 def _alike(rows: Sequence[Any]) -> Iterator[tuple[np.ndarray, Any]]:
     """Rows as `rated` takes them, stacked as far as their gears are of one kind, and which ones they are."""
-    simple = [(bare(row[0]), *row[1:]) for row in rows]
+    simple = [(bare_pair(row[0]), *row[1:]) for row in rows]
     kinds: dict[Any, list[int]] = {}
     for number, row in enumerate(simple):
         kinds.setdefault(jax.tree.structure(row), []).append(number)

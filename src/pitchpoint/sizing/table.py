@@ -7,14 +7,14 @@ from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import BeforeValidator, ValidationError
 
-from pitchpoint.cases.document import read, strip
+from pitchpoint.cases.document import read_tables, strip
 from pitchpoint.cases.template import table_lines
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.table import DISTANCE
 from pitchpoint.input.kinds import LIFE, LOAD_FACTOR, LOADED, SPEED, TEMPERATURE
 from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.input.tables import Table, quantity_of
-from pitchpoint.registry import alike, enumerated, known_as, nearest
+from pitchpoint.input.tables import Table, field_quantity
+from pitchpoint.registry import enumerated, known_as, nearest, similar_names
 
 __all__ = ["AIMS", "SIZED_FAMILIES", "TASK_TABLE", "Task", "read_task", "task_template"]
 
@@ -228,8 +228,8 @@ def _faults(details: Sequence[Any]) -> Iterator[InputError]:
             yield cause.at(key=key)
         elif key in unknown:
             yield InputError(f"is not a known key{nearest(key, known)}", key=key)
-        elif not any(key in alike(name, known) for name in unknown):
-            quantity = quantity_of(known[key])
+        elif not any(key in similar_names(name, known) for name in unknown):
+            quantity = field_quantity(known[key])
             allowed = "" if quantity is None else f"; {quantity.allowed}"
             yield InputError(f"is missing; write {json.dumps(SAMPLE[key])}{allowed}", key=key)
 
@@ -245,7 +245,7 @@ def read_task(path: Path | str, **options: Any) -> Task:
         InputError: all that is wrong, each with its file, its key and in one sentence.
     """
     path = Path(path)
-    tree = strip(read(path), {}, name=path.name)
+    tree = strip(read_tables(path), {}, name=path.name)
     wrong = Complaints(path.name)
     if TASK_TABLE not in tree and {"gears", "stages", "variants"} & tree.keys():
         raise InputError(
@@ -266,7 +266,7 @@ def read_task(path: Path | str, **options: Any) -> Task:
                 f"{shown(stated)} was given where one table [{TASK_TABLE}] belongs", key=TASK_TABLE
             )
         )
-    elif not any(alike(key, [TASK_TABLE]) for key in unknown):
+    elif not any(similar_names(key, [TASK_TABLE]) for key in unknown):
         wrong.add(
             InputError(
                 f"is missing: torque, ratio, speed and life stand in a table [{TASK_TABLE}], which "

@@ -15,7 +15,7 @@ __all__ = [
     "dynamic_factor_by_resonance",
     "face_load_factor",
     "pinion_misalignment",
-    "reduced_mass",
+    "reduced_mass_per_width",
     "resonance_number",
     "root_face_load_factor",
     "running_in",
@@ -96,7 +96,9 @@ def dynamic_factor(
     return straight - jnp.clip(overlap_ratio, 0.0, 1.0) * (straight - inclined)
 
 
-def reduced_mass(*, mean_radii: Both, inner_radii: Both, base_radii: Both, density: Both) -> Found:
+def reduced_mass_per_width(
+    *, mean_radii: Both, inner_radii: Both, base_radii: Both, density: Both
+) -> Found:
     """Mass of a pair of gears reduced to the line of action, per width [kg/m].
 
     Args:

@@ -175,7 +175,7 @@ def rated(
     """The rating of a mesh, see `rate`.
 
     Args:
-        mesh: of which there is a `rated_pair`, `bare`.
+        mesh: of which there is a `rated_pair`, `bare_pair`.
         path_ends: of the pair as it runs, see `RatedPair`; not a number where those of the bare mesh are it.
         duty, factors, strengths, finish: as `rate` takes them.
 
@@ -341,7 +341,7 @@ def _stiffness(pair: RatedPair, line_load: One, strengths: Strengths) -> tuple[O
 def _reduced_mass(pair: RatedPair, strengths: Strengths) -> One:
     """Of both gears, as solid as they are; per width [kg/m]."""
     roots = jnp.abs(pair.root_radii)
-    return load_factors.reduced_mass(
+    return load_factors.reduced_mass_per_width(
         mean_radii=(jnp.abs(pair.tip_radii) + roots) / 2.0,
         inner_radii=roots + jnp.where(pair.teeth < 0.0, 1.0, -1.0) * pair.rim_thickness,
         base_radii=pair.base_radii,

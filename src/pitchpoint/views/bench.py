@@ -125,8 +125,8 @@ def _in_one_unit(name: str, values: Sequence[float]) -> tuple[str, list[str]]:
     variable = BENCHED[name]
     shown = np.asarray(show.displayed(variable, np.asarray(values)), float)
     shown = np.where(np.abs(shown) < _NOTHING, 0.0 * shown, shown)
-    cells = [NONE if np.isnan(value) else show.number(float(value)) for value in shown]
-    return show.unit(variable.display), cells
+    cells = [NONE if np.isnan(value) else show.number_text(float(value)) for value in shown]
+    return show.display_unit(variable.display), cells
 
 
 _NOTHING = 1e-6
@@ -318,7 +318,7 @@ def _curves(
     """A line of each drive over its load or speed."""
     percents = 100.0 * np.array(parts)
     traces = [
-        plot.plain(key, percents, 100.0 * getattr(drive, name), "%", mode="lines+markers")
+        plot.legend_line(key, percents, 100.0 * getattr(drive, name), "%", mode="lines+markers")
         for key, drive in zip(keys, bench.drives, strict=True)
     ]
     return plot.Figure(
@@ -337,26 +337,31 @@ _GAPS = "A line has a gap where friction holds its drive, or no balance was foun
 
 def _scatter(bench: Bench, keys: Sequence[plot.Key], name: str, title: str) -> plot.Figure:
     """A dot for each drive over its mass, in handy units."""
-    mass, unit = BENCHED["drive_mass"], "%" if name == "loss" else show.unit(BENCHED[name].display)
+    mass, unit = (
+        BENCHED["drive_mass"],
+        "%" if name == "loss" else show.display_unit(BENCHED[name].display),
+    )
     traces: list[plot.Trace] = []
     for key, drive in zip(keys, bench.drives, strict=True):
         value, weight = _value(drive, name), drive.figures.get("drive_mass", np.nan)
         if np.isfinite(value) and np.isfinite(weight):
             marks: dict[str, Any] = {
                 "mode": "markers+text" if len(keys) <= _FEW else "markers",
-                "text": [plot.text(key.label)],
+                "text": [plot.plotly_text(key.label)],
                 "textposition": "top center",
                 "marker": {"size": 9, "color": key.colour},
                 "cliponaxis": False,
             }
-            traces.append(plot.plain(key, [float(mass.displayed(weight))], [value], unit, **marks))
+            traces.append(
+                plot.legend_line(key, [float(mass.displayed(weight))], [value], unit, **marks)
+            )
     words = f"loss [{unit}]" if name == "loss" else f"{HEADS[name]} [{unit}]"
     scales = {"xaxis": {"type": "log"}, "yaxis": {"type": "log"}}
     return plot.Figure(
         f"bench_{name}",
         title,
         traces,
-        plot.layout(f"mass [{show.unit(mass.display)}]", words, **scales),
+        plot.layout(f"mass [{show.display_unit(mass.display)}]", words, **scales),
         "Both axes in equal ratios.",
         tuple(keys) if len(keys) > _FEW else (),
         missing="No drive has both.",

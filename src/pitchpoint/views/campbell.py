@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.views import show
-from pitchpoint.views.figures import Figure, Key, Trace, display, layout, plain
+from pitchpoint.views.figures import Figure, Key, Trace, display, layout, legend_line
 
 __all__ = ["campbell"]
 
@@ -51,10 +51,10 @@ def campbell(
     for key, order in orders:
         line = np.array([0.0, min(fastest, most / order)])
         x, y = display("speed", line, data), display("natural_frequency", order * line)
-        traces.append(plain(key, x, y, unit))
+        traces.append(legend_line(key, x, y, unit))
         marks.append({"text": key.label, "x": float(x[1]), "y": float(y[1])} | _LABEL)
     for key, value in natural:
-        traces.append(plain(key, ends, display("natural_frequency", np.full(2, value)), unit))
+        traces.append(legend_line(key, ends, display("natural_frequency", np.full(2, value)), unit))
     room = _ROOM if marked else (1.0, 1.0)
     highest = float(display("natural_frequency", most))
     words = {"annotations": _legible(marks, float(ends[1]), highest)} if marked else {}

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pitchpoint.analyses.figures import covers
+from pitchpoint.analyses.figures import efficiency_coverage
 from pitchpoint.runs.designs import MainFigure, main_results, shared_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import law_title
-from pitchpoint.views.inputs import FOLLOWING, input_rows
+from pitchpoint.views.inputs import FOLLOWING, printed_input_rows
 from pitchpoint.views.point import ratio_words
 
 __all__ = [
@@ -62,7 +62,7 @@ def input_tables(outcomes: Mapping[str, Outcome]) -> tuple[Compared, Compared]:
     rows: dict[tuple[str, str], dict[str, str]] = {}
     stated: set[tuple[str, str]] = set()
     for design, outcome in outcomes.items():
-        for row in input_rows(outcome.manifest):
+        for row in printed_input_rows(outcome.manifest):
             words = show.pretty(row["value"]) or NOTHING
             rows.setdefault((row["table"], row["key"]), {})[design] = words
             if row["status"] != "default":
@@ -227,7 +227,7 @@ def _efficiency(outcome: Outcome) -> str:
     operation = outcome.parts.get("operation")
     if operation is None or "mean_efficiency" not in operation:
         return ""
-    of = covers(operation).partition(":")[0] or "whole drive"
+    of = efficiency_coverage(operation).partition(":")[0] or "whole drive"
     lacks = operation["mean_efficiency"].attrs.get("lacks")
     return f"{of}, without the {lacks}" if lacks else of
 
@@ -265,7 +265,7 @@ def left_by_rounding(figure: MainFigure) -> bool:
 def _value(figure: MainFigure, design: str) -> str:
     if design not in figure.values:
         return NOTHING
-    return show.number(_shown(figure, figure.values[design]))
+    return show.number_text(_shown(figure, figure.values[design]))
 
 
 def _difference(figure: MainFigure, first: str, design: str) -> str:
@@ -278,6 +278,6 @@ def _difference(figure: MainFigure, first: str, design: str) -> str:
         return f"{show.signed(change, 2)} points"
     if abs(change) <= _ROUNDING * max(abs(before), abs(now)):
         return "0"
-    signed = show.number(change) if change < 0.0 else f"+{show.number(change)}"
+    signed = show.number_text(change) if change < 0.0 else f"+{show.number_text(change)}"
     part = 100.0 * np.divide(change, abs(before)) if before else np.inf
     return f"{signed} ({show.signed(part, 1)} %)" if abs(part) < 1000.0 else signed

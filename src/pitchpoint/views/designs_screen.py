@@ -19,7 +19,7 @@ from pitchpoint.views.designs import (
     of_several,
     result_table,
 )
-from pitchpoint.views.first_screen import Line, Style, within, wrapped
+from pitchpoint.views.first_screen import Line, Style, lines_within, wrapped
 from pitchpoint.views.point import by_members
 
 __all__ = ["COMPARED_LINES", "designs_screen"]
@@ -80,13 +80,13 @@ def designs_screen(outcomes: Mapping[str, Outcome], report: str, width: int) -> 
     rows, alike = _answers(outcomes)
     head = [
         *_told(outcomes, "implausible", "fails", _FAILS, width),
-        *(Line(text, "title") for text in within(_title([*outcomes]), width, 2)),
+        *(Line(text, "title") for text in lines_within(_title([*outcomes]), width, 2)),
         *_told(outcomes, "warnings", "doubt", _DOUBTS, width),
     ]
     notes = [law_words(outcomes, 1), *_basis(outcomes), *_same(alike)]
     for most in (2, 1)[len(outcomes) > _FEW :]:  # figures come first
         foot = [
-            *chain(*(within(text, width, most) for text in notes)),
+            *chain(*(lines_within(text, width, most) for text in notes)),
             *_inputs(outcomes, width, most),
         ]
         room = COMPARED_LINES - len(head) - len(foot) - 2
@@ -122,7 +122,7 @@ def _told(
     ranked = [text for texts in zip_longest(*every) for text in texts if text is not None]
     shown = ranked if len(ranked) <= most else ranked[: most - 1]
     lines = 2 if style == "doubt" else 1
-    yield from (Line(line, style) for text in shown for line in within(text, width, lines))
+    yield from (Line(line, style) for text in shown for line in lines_within(text, width, lines))
     if hidden := len(ranked) - len(shown):
         yield Line(f"{hidden} more of this kind by --full.", style)
 
@@ -140,7 +140,7 @@ def _answers(outcomes: Mapping[str, Outcome]) -> tuple[list[tuple[str, ...]], li
         if len({*row[1 : len(outcomes) + 1]}) > 1:
             rows.append(row)
         else:
-            alike.append(f"{name} {row[1]} {show.unit(figure.variable.display)}".strip())
+            alike.append(f"{name} {row[1]} {show.display_unit(figure.variable.display)}".strip())
     return [*ratios, *rows], alike
 
 

@@ -81,7 +81,7 @@ def cycle_figures(data: xr.Dataset) -> Iterator[KeyFigure]:
     for order, (name, variable, detail) in enumerate(rows):
         yield KeyFigure(order, name, of(variable), detail)
     shares = [
-        f"{words} {show.number(100.0 * seconds / total, 3)} %"
+        f"{words} {show.number_text(100.0 * seconds / total, 3)} %"
         for words, seconds in (
             ("driven", quadrants["I"] + quadrants["III"]),
             ("back-driven", quadrants["II"] + quadrants["IV"]),

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.figures import covers, main_figures
+from pitchpoint.analyses.figures import efficiency_coverage, main_figures
 from pitchpoint.results.chosen_units import shown_in, unit_in_use
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.explore import Axis, Explored
@@ -26,7 +26,7 @@ from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import environment, packed, packed_plotly
 from pitchpoint.views.section import Animation
 
-__all__ = ["ExplorerPoint", "Reader", "render", "write_explorer"]
+__all__ = ["ExplorerPoint", "Reader", "explorer_page", "write_explorer"]
 
 _COURSES = {
     "cycle": ("efficiency", "input_torque"),
@@ -178,10 +178,10 @@ def write_explorer(
         drawings: of that reader.
         path: of the HTML file.
     """
-    write_text(Path(path), render(found, drawings))
+    write_text(Path(path), explorer_page(found, drawings))
 
 
-def render(found: Explored[ExplorerPoint], drawings: Sequence[Animation]) -> str:
+def explorer_page(found: Explored[ExplorerPoint], drawings: Sequence[Animation]) -> str:
     """The page as text.
 
     Args:
@@ -220,7 +220,7 @@ def _rendered(found: Explored[ExplorerPoint], drawings: Sequence[Animation]) -> 
             case=manifest["case"],
             variant=manifest["variant"],
             version=data.attrs["version"],
-            covers=covers(data),
+            covers=efficiency_coverage(data),
             axes=axes,
             laws=content["laws"],
             first=figures[0],
@@ -247,7 +247,7 @@ def _axis(axis: Axis, found: Explored[ExplorerPoint]) -> dict[str, Any]:
     return {
         "key": axis.key,
         "words": _words(axis.key, found.own.manifest),
-        "unit": show.unit(unit_in_use(quantity.kind, quantity.unit)),
+        "unit": show.display_unit(unit_in_use(quantity.kind, quantity.unit)),
         "values": values,
         "own": own_value[0],
         "step": _step(values),
@@ -353,7 +353,7 @@ def _figure(
         "name": name,
         "words": ", ".join(words),
         "axis": short_axis(name, found.figures),
-        "unit": show.unit(variable.display),
+        "unit": show.display_unit(variable.display),
         "range": rounded([finite.min(), finite.max()]),
         "error": _percent(found.errors[name]) if name in found.errors else "",
         "values": rounded(values, 6),
@@ -361,7 +361,7 @@ def _figure(
 
 
 def _percent(share: float) -> str:
-    return f"{show.number(100.0 * share, 2)} %" if share >= 5e-6 else "below 0.001 %"
+    return f"{show.number_text(100.0 * share, 2)} %" if share >= 5e-6 else "below 0.001 %"
 
 
 def _error_words(found: Explored[ExplorerPoint]) -> str:

@@ -41,16 +41,16 @@ __all__ = [
     "law_title",
     "laws",
     "layout",
+    "legend_line",
     "level",
     "line",
     "line_heights",
     "merged",
     "order_bars",
     "pair_key",
-    "plain",
+    "plotly_text",
     "rounded",
     "short_axis",
-    "text",
     "verticals",
 ]
 
@@ -282,7 +282,7 @@ def line(curve: Curve, x: Any, y: Any, unit: str, **more: Any) -> Trace:
     return {
         "type": "scatter",
         "mode": "lines",
-        "name": text(curve.label),
+        "name": plotly_text(curve.label),
         "meta": curve.key,
         "x": rounded(x, 6),
         "y": rounded(y),
@@ -306,7 +306,7 @@ def hovered(values: Any) -> str:
     return f".{max(4, 3 + extra_digits)}~r"
 
 
-def plain(key: Key, x: Any, y: Any, unit: str, **more: Any) -> Trace:
+def legend_line(key: Key, x: Any, y: Any, unit: str, **more: Any) -> Trace:
     """Line of an entry of a legend, as `line` is that of a curve."""
     return line(Curve("", "", "", key.label, key.colour, key.dash), x, y, unit, **more)
 
@@ -315,7 +315,7 @@ def order_bars(key: Key, orders: np.ndarray, amplitudes: Any, unit: str) -> Trac
     """Bars of the amplitudes of orders, shapes (order,)."""
     return {
         "type": "bar",
-        "name": text(key.label),
+        "name": plotly_text(key.label),
         "meta": "",
         "x": orders.tolist(),
         "y": rounded(amplitudes),
@@ -393,7 +393,7 @@ def verticals(marks: Sequence[tuple[str, float]]) -> dict[str, Any]:
 
 def level(name: str, value: float, of: Any = None) -> str:
     """A value at which a line holds, with its unit, for a legend [SI in], see `show.described`."""
-    return f"{show.number(float(display(name, value, of)))}\u00a0{show.unit_of(name, of)}"
+    return f"{show.number_text(float(display(name, value, of)))}\u00a0{show.unit_of(name, of)}"
 
 
 def short_axis(name: str, of: Any = None) -> str:
@@ -402,7 +402,7 @@ def short_axis(name: str, of: Any = None) -> str:
     return show.bracketed(variable.symbol, variable)
 
 
-def text(words: str) -> str:
+def plotly_text(words: str) -> str:
     """Words for plotly.js, which reads tags in them otherwise."""
     return html.escape(words, quote=False)
 

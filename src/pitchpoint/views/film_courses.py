@@ -16,26 +16,26 @@ from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.lines import REGRESSED, folded, gapped, regimes, titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = [
     "MOST",
     "NONE",
-    "answered",
-    "beneath",
-    "counted",
-    "course",
+    "contact_place",
     "course_figure",
-    "courses",
+    "cycle_trace",
+    "figure_notes",
     "figures_table",
+    "film_counts",
+    "film_course_panel",
     "film_key_figure",
-    "film_laws",
-    "gone",
+    "film_law_errors",
+    "film_quantity",
+    "film_tables",
+    "films_sentence",
+    "missing_films",
     "of_most",
-    "place_of",
-    "printed",
     "solved_how",
-    "told",
 ]
 
 NONE = "There is no film to show."
@@ -85,13 +85,14 @@ _CENTRAL = ("longdash", "dashdot", "dot")
 """Dashes of film laws for the middle, in turns: laws that agree lie upon each other."""
 
 
-def answered(data: xr.Dataset) -> str:
+def films_sentence(data: xr.Dataset) -> str:
     """Thinnest film, load on asperities, friction and efficiency by the films, in words."""
     if int(data["solved_contacts"]) == 0:
         return _none(data)
     words = (
-        f"{_least(data)}, {told(data, 'smallest_lambda')} of Rq{_near_ends(data)}; "
-        f"asperities carry up to {told(data, 'largest_asperity_share')} of a contact's load{_warmed(data)}"
+        f"{_least(data)}, {film_quantity(data, 'smallest_lambda')} of Rq{_near_ends(data)}; "
+        f"asperities carry up to {film_quantity(data, 'largest_asperity_share')} of a contact's "
+        f"load{_warmed(data)}"
     )
     words += _spread(data)
     if rests := str(data.attrs["assumed"]):
@@ -99,7 +100,9 @@ def answered(data: xr.Dataset) -> str:
     words += _in_series(data)
     if not np.isfinite(float(data["mean_film_loss"])):
         return f"{words}; loss and efficiency are withheld, some films were not found"
-    friction, loss = (told(data, name) for name in ("mean_film_friction", "mean_film_loss"))
+    friction, loss = (
+        film_quantity(data, name) for name in ("mean_film_friction", "mean_film_loss")
+    )
     return f"{words}; friction coefficient {friction} in the mean, loss {loss}{_efficient(data)}"
 
 
@@ -128,7 +131,9 @@ def _in_series(data: xr.Dataset) -> str:
     """What films take from the torsional stiffness, in words."""
     if "stiffness_with_films" not in data:
         return ""
-    without, films = (told(data, f"stiffness_{which}_films") for which in ("without", "with"))
+    without, films = (
+        film_quantity(data, f"stiffness_{which}_films") for which in ("without", "with")
+    )
     part = 1.0 - float(data["stiffness_with_films"] / data["stiffness_without_films"])
     if not np.isfinite(part):
         return "; what films take from the torsional stiffness is withheld"
@@ -140,11 +145,11 @@ def _in_series(data: xr.Dataset) -> str:
 
 def _least(data: xr.Dataset) -> str:
     """Thinnest films with what the grid may make them off, in words."""
-    least = f"{told(data, 'smallest_film')}{_by_grid(data, 'minimum')}"
+    least = f"{film_quantity(data, 'smallest_film')}{_by_grid(data, 'minimum')}"
     below_zero = ": mean planes overlap" if float(data["smallest_film"]) < 0.0 else ""
     if not np.isfinite(float(data.get("smallest_central_film", np.nan))):
         return f"{least} at least{below_zero}"
-    middle = f"{told(data, 'smallest_central_film')}{_by_grid(data, 'central')}"
+    middle = f"{film_quantity(data, 'smallest_central_film')}{_by_grid(data, 'central')}"
     return f"{middle} at least in the middle of a contact, {least} anywhere{below_zero}"
 
 
@@ -158,7 +163,7 @@ def _near_ends(data: xr.Dataset) -> str:
     """Largest pressure near the ends of lines, in words."""
     if "largest_end_pressure" not in data:
         return ""
-    return f"; pressure up to {told(data, 'largest_end_pressure')} half a half-width from an end"
+    return f"; pressure up to {film_quantity(data, 'largest_end_pressure')} half a half-width from an end"
 
 
 def _thermal(data: xr.Dataset) -> str:
@@ -182,22 +187,22 @@ def _first(data: xr.Dataset) -> tuple[str, ...]:
 def _warmed(data: xr.Dataset) -> str:
     if _thermal(data) == ISOTHERMAL:
         return ""
-    film, flash = (told(data, name) for name in _WARMTH)
+    film, flash = (film_quantity(data, name) for name in _WARMTH)
     return f"; films are up to {film} warmer than their inlet, surfaces {flash}"
 
 
 def _efficient(data: xr.Dataset) -> str:
     if not np.isfinite(float(data["film_efficiency"])):
         return ""
-    return f", efficiency {told(data, 'film_efficiency')}"
+    return f", efficiency {film_quantity(data, 'film_efficiency')}"
 
 
-def told(data: xr.Dataset, name: str) -> str:
+def film_quantity(data: xr.Dataset, name: str) -> str:
     """A figure of the films with its unit."""
     return show.quantity(name, float(data[name]), of=data)
 
 
-def courses(
+def film_course_panel(
     name: str, outcome: Outcome, data: xr.Dataset, more: Sequence[plot.Figure] = ()
 ) -> plot.Panel:
     """Films, film over roughness, asperities, friction and loss over the mesh cycle, and more figures."""
@@ -237,10 +242,10 @@ def _mean(data: xr.Dataset, values: np.ndarray) -> np.ndarray:
     return mean
 
 
-def course(data: xr.Dataset, name: str, key: plot.Key, values: np.ndarray) -> plot.Trace:
+def cycle_trace(data: xr.Dataset, name: str, key: plot.Key, values: np.ndarray) -> plot.Trace:
     """Values [phase] of a variable over the mesh cycle."""
     x, y = gapped(*folded(data["phase"].values, values))
-    return plot.plain(key, x, plot.display(name, y, data), show.unit_of(name, data))
+    return plot.legend_line(key, x, plot.display(name, y, data), show.unit_of(name, data))
 
 
 def course_figure(
@@ -271,17 +276,21 @@ _SOLVED = (
 def _films(name: str, data: xr.Dataset, axis: str) -> plot.Figure:
     """Films solved, with what the grid may change of them, beside those of every regression."""
     lines = [
-        (key, course(data, film, key, of_most(data, data[film].values)) | _error_bars(data, film))
+        (
+            key,
+            cycle_trace(data, film, key, of_most(data, data[film].values))
+            | _error_bars(data, film),
+        )
         for key, film in zip(_SOLVED, ("minimum_film", "central_film"), strict=True)
     ]
     lines += [
-        (key, course(data, variable, key, of_most(data, data[variable].values)))
+        (key, cycle_trace(data, variable, key, of_most(data, data[variable].values)))
         for variable, key in _OF_LINES_ALONE.items()
         if variable in data
     ]
     by_law = of_most(data, data["film_by_law"].values)
     lines += [
-        (key, course(data, "film_by_law", key, values))
+        (key, cycle_trace(data, "film_by_law", key, values))
         for key, values in zip(_film_keys(data), by_law, strict=True)
     ]
     barred = any("error_y" in line for _, line in lines)
@@ -333,7 +342,9 @@ def _ratios(name: str, data: xr.Dataset, axis: str) -> Iterator[plot.Figure]:
     }
     by_law = of_most(data, data["film_by_law"].values) / rough
     ratios |= dict(zip(_film_keys(data), by_law, strict=True))
-    lines = [(key, course(data, "minimum_lambda", key, values)) for key, values in ratios.items()]
+    lines = [
+        (key, cycle_trace(data, "minimum_lambda", key, values)) for key, values in ratios.items()
+    ]
     title = "Film over composite Rq, and lubrication regimes"
     note = f"{MOST} {REGRESSED} What asperities carry stands in the next figure."
     figure = course_figure(name, title, "minimum_lambda", lines, axis, note)
@@ -356,8 +367,8 @@ def _asperities(name: str, data: xr.Dataset, axis: str) -> plot.Figure:
         plot.Key("contact that carries most", plot.PALETTE[1], "dash"),
     )
     lines = [
-        (key, course(data, "asperity_share", key, _mean(data, shares))),
-        (most, course(data, "asperity_share", most, of_most(data, shares))),
+        (key, cycle_trace(data, "asperity_share", key, _mean(data, shares))),
+        (most, cycle_trace(data, "asperity_share", most, of_most(data, shares))),
     ]
     title = "Part of the load on asperities"
     return course_figure(name, title, "asperity_share", lines, axis, MEANS)
@@ -370,11 +381,11 @@ def _frictions(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> plot
         plot.Key("of it by asperities", plot.INK, "dot"): "boundary_part",
     }
     lines = [
-        (key, course(data, figure, key, _mean(data, data[figure].values)))
+        (key, cycle_trace(data, figure, key, _mean(data, data[figure].values)))
         for key, figure in both.items()
     ]
     for key, values in zip(_law_keys(outcome, data), data["friction"].values, strict=True):
-        lines.append((key, course(data, "friction", key, _mean(data, values))))
+        lines.append((key, cycle_trace(data, "friction", key, _mean(data, values))))
     return course_figure(name, "Friction coefficient", "friction", lines, axis, MEANS)
 
 
@@ -389,14 +400,14 @@ def _law_keys(outcome: Outcome, data: xr.Dataset) -> list[plot.Key]:
 def _losses(name: str, outcome: Outcome, data: xr.Dataset, axis: str) -> plot.Figure:
     """Loss of the teeth by the films, and by the laws of the case."""
     key = plot.Key("by films", plot.INK)
-    lines = [(key, course(data, "film_loss", key, data["film_loss"].values))]
+    lines = [(key, cycle_trace(data, "film_loss", key, data["film_loss"].values))]
     for law, values in zip(_law_keys(outcome, data), data["law_loss"].values, strict=True):
-        lines.append((law, course(data, "law_loss", law, values)))
+        lines.append((law, cycle_trace(data, "law_loss", law, values)))
     note = "Sliding and rolling of all contacts."
     return course_figure(name, "Loss of the teeth", "film_loss", lines, axis, note)
 
 
-def gone(data: xr.Dataset) -> Iterator[section.Paragraph]:
+def missing_films(data: xr.Dataset) -> Iterator[section.Paragraph]:
     """That contacts have no film, where some have none."""
     missing = int(data["loaded_contacts"]) - int(data["solved_contacts"])
     if missing:
@@ -433,7 +444,7 @@ def _warmth(data: xr.Dataset) -> str:
     thermal = _thermal(data)
     if thermal == ISOTHERMAL:
         return "Isothermal."
-    film, flash = (told(data, name) for name in _WARMTH)
+    film, flash = (film_quantity(data, name) for name in _WARMTH)
     named = thermal.replace("_", " ")
     return f"With heat ({named}): films up to {film} above their inlet, surfaces up to {flash}."
 
@@ -443,9 +454,9 @@ def figures_table(outcome: Outcome, data: xr.Dataset) -> section.SectionTable:
     law_names, lines = plot.laws(data), [LINES] * ("mean_line_loss" in data)
 
     def row(name: str, cells: Sequence[str]) -> tuple[str, ...]:
-        beside = [told(data, _OF_LINES[name]) if name in _OF_LINES else "" for _ in lines]
+        beside = [film_quantity(data, _OF_LINES[name]) if name in _OF_LINES else "" for _ in lines]
         title = titled(name, data).removesuffix(" by the films")
-        return (title, told(data, name), *beside, *cells)
+        return (title, film_quantity(data, name), *beside, *cells)
 
     empty = [""] * len(law_names)
     rows = [row(name, empty) for name in _main(data)]
@@ -465,7 +476,7 @@ LINES = "lines without ends"
 _OF_LINES = {"mean_film_friction": "mean_line_friction", "mean_film_loss": "mean_line_loss"}
 
 
-def film_laws(data: xr.Dataset) -> Iterator[section.Block]:
+def film_law_errors(data: xr.Dataset) -> Iterator[section.Block]:
     """How far film laws are off, as a table and words."""
     yield _film_laws_table(data)
     yield section.Paragraph(
@@ -491,7 +502,7 @@ def _compared(name: str, value: float) -> str:
     return show.quantity(name, value) if np.isfinite(value) else "not compared"
 
 
-def beneath(data: xr.Dataset) -> Iterator[section.Paragraph]:
+def figure_notes(data: xr.Dataset) -> Iterator[section.Paragraph]:
     """Notes under the figures: what rests on assumptions, where the film is thinnest."""
     if rests := _assumed(data):
         yield section.Paragraph(rests, "note")
@@ -502,7 +513,7 @@ def beneath(data: xr.Dataset) -> Iterator[section.Paragraph]:
     yield from (section.Paragraph(text, "note") for text in film_notes(data))
 
 
-def place_of(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
+def contact_place(data: xr.Dataset, phase: int, pair: int, part: int) -> str:
     """Where a contact of the cycle is, in words; bodies with one alone have neither phases nor pairs."""
     _, pairs, part_count = data["minimum_film"].shape
     word = data["minimum_film"].dims[-1]
@@ -521,7 +532,7 @@ def _thinnest(data: xr.Dataset) -> str:
     if np.isnan(film).all():
         return _none(data)
     phase, pair, part = map(int, np.unravel_index(np.nanargmin(film), film.shape))
-    at = place_of(data, phase, pair, part)
+    at = contact_place(data, phase, pair, part)
     there = {name: data[name].values[phase, pair, part] for name in _THERE}
     least, rough, pressed = (show.quantity(name, float(v), of=data) for name, v in there.items())
     return f"The thinnest film is at {at}: {least}, {rough} of Rq, under {pressed} at most."
@@ -535,11 +546,11 @@ _CHOSEN = ("viscosity_law", "density_law", "shear_law", "asperities")
 _OVERLAP = "A smallest film below zero: the mean planes of the rough flanks overlap; asperities carry there."
 
 
-def printed(title: str, data: xr.Dataset) -> Iterator[section.Printed]:
+def film_tables(title: str, data: xr.Dataset) -> Iterator[section.Printed]:
     """What the screen shows of films: their figures, then friction and losses beside those of laws."""
-    row = {head(name, data): shown(name, float(data[name]), data) for name in _first(data)}
+    row = {head(name, data): screen_value(name, float(data[name]), data) for name in _first(data)}
     below = _OVERLAP if float(data["smallest_film"]) < 0.0 else ""
-    yield section.Printed(title, [row], " ".join(filter(None, (below, counted(data)))))
+    yield section.Printed(title, [row], " ".join(filter(None, (below, film_counts(data)))))
     rows = [{"friction by": "films", **_row(data, [*_BESIDE], ())}]
     if "mean_line_loss" in data:
         rows.append({"friction by": LINES, **_row(data, [*_OF_LINES.values()], (), [*_OF_LINES])})
@@ -551,7 +562,7 @@ def printed(title: str, data: xr.Dataset) -> Iterator[section.Printed]:
     if "stiffness_with_films" in data:
         yield section.Printed(
             "",
-            [{head(name, data): shown(name, float(data[name]), data) for name in _SERIES}],
+            [{head(name, data): screen_value(name, float(data[name]), data) for name in _SERIES}],
             IN_SERIES,
         )
 
@@ -568,11 +579,12 @@ def _row(
     }
     empty = dict.fromkeys(symbols.values(), "")
     return empty | {
-        symbols[head]: shown(name, float(data[name].values[at]), data) for head, name in pairs
+        symbols[head]: screen_value(name, float(data[name].values[at]), data)
+        for head, name in pairs
     }
 
 
-def counted(data: xr.Dataset) -> str:
+def film_counts(data: xr.Dataset) -> str:
     """How many contacts have a film, and what of it rests on assumptions."""
     solved, every = int(data["solved_contacts"]), int(data["loaded_contacts"])
     words = f"{solved} of {every} loaded contacts of the mesh cycle have a film that was found."

@@ -11,15 +11,14 @@ from typing import Literal
 
 import xarray as xr
 
-from pitchpoint.analyses.figures import headline, of_contact
+from pitchpoint.analyses.figures import of_contact, point_by_valid_laws
 from pitchpoint.doubts import as_doubt
-from pitchpoint.results.target_rows import in_words
+from pitchpoint.results.target_rows import verdict_sentence
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
-from pitchpoint.views.inputs import number
-from pitchpoint.views.inputs import words as input_words
-from pitchpoint.views.point import by_members, ratio_words, speed_ratio
+from pitchpoint.views.inputs import input_number, input_words
+from pitchpoint.views.point import by_members, driver_speed_ratio, ratio_words
 from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     OF_MESHES,
@@ -27,9 +26,9 @@ from pitchpoint.views.section import (
     Page,
     figures_by_members,
     key_figures,
-    said,
+    page_words,
     stages_together,
-    told_of_variants,
+    variant_warnings,
 )
 from pitchpoint.views.sections.studies import is_swept, marked, swept_place
 
@@ -40,9 +39,9 @@ __all__ = [
     "aligned",
     "beside_each_other",
     "first_screen",
+    "lines_within",
     "most_lines",
     "swept_beside",
-    "within",
     "wrapped",
 ]
 
@@ -188,7 +187,11 @@ def _differing_bases(outcomes: Mapping[str, Outcome]) -> Iterator[dict[str, str]
 
 def _law(outcome: Outcome) -> str:
     """Friction law by which figures of an outcome are."""
-    return str(headline(outcome.parts)["law"].values[0]) if "operation" in outcome.parts else "–"
+    return (
+        str(point_by_valid_laws(outcome.parts)["law"].values[0])
+        if "operation" in outcome.parts
+        else "–"
+    )
 
 
 def swept_beside(outcomes: Mapping[str, Outcome]) -> list[list[dict[str, str]]]:
@@ -242,13 +245,15 @@ def _operation(outcome: Outcome) -> str:
         show.pretty(input_words(outcome, "operation", key))
         for key in ("speed", "torque", "force", "temperature")
     )
-    manifest, ratio, law = outcome.manifest, speed_ratio(outcome), ""
+    manifest, ratio, law = outcome.manifest, driver_speed_ratio(outcome), ""
     loaded, load = manifest["loaded"], torque or force
     if manifest.get("stages") and isfinite(ratio):
-        speed_out = show.quantity("output_speed", number(outcome, "operation", "speed") / ratio)
+        speed_out = show.quantity(
+            "output_speed", input_number(outcome, "operation", "speed") / ratio
+        )
         loaded, load = f"{loaded} at {speed_out}", f"{load}, ratio {ratio_words(outcome)}"
     elif "operation" in outcome.parts:
-        law = f", friction {headline(outcome.parts)['law'].values[0]}"
+        law = f", friction {point_by_valid_laws(outcome.parts)['law'].values[0]}"
     return f"{manifest['driver']} at {speed}, {loaded} with {load}, oil {temperature}{law}"
 
 
@@ -280,7 +285,7 @@ def _key_figures(outcome: Outcome) -> list[KeyFigure]:
 
 def _of_variants(outcomes: Mapping[str, Outcome], kind: str) -> list[str]:
     """Briefs of all variants, each once and the worst of each first, those of some with their variants."""
-    by_text = told_of_variants(
+    by_text = variant_warnings(
         outcomes, kind, lambda one, text: by_members(one, show.pretty(as_doubt(text).brief))
     )
     return [
@@ -348,7 +353,7 @@ def _rows_met(outcomes: Mapping[str, Outcome]) -> Iterator[str]:
         if outcome.rows:
             several = sum(bool(compared.rows) for compared in outcomes.values()) > 1
             start = f"{variant}: " if several else ""
-            yield f"{start}{in_words(outcome.rows)}"
+            yield f"{start}{verdict_sentence(outcome.rows)}"
 
 
 _PATH = 30
@@ -378,7 +383,7 @@ def wrapped(text: str, width: int) -> list[str]:
     return textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)
 
 
-def within(text: str, width: int, most: int) -> list[str]:
+def lines_within(text: str, width: int, most: int) -> list[str]:
     """A text on so many lines at most; the last one ends early where there is more."""
     lines = wrapped(text, width)
     return [*lines[: most - 1], show.first_clauses(" ".join(lines[most - 1 :]), width)][
@@ -390,7 +395,7 @@ def _more(outcomes: Mapping[str, Outcome], report: Path, width: int) -> list[Lin
     """Where everything else is: the page, and of which sections there are tables."""
     page = Page(outcomes, {})
     titles = [
-        said(section.short, page)
+        page_words(section.short, page)
         for section in in_order()
         if any(
             printed.rows or printed.line

@@ -16,13 +16,13 @@ from pitchpoint.views.show import handy
 
 __all__ = [
     "FOLLOWING",
-    "given",
-    "in_words",
-    "input_rows",
-    "number",
+    "input_number",
+    "input_value",
+    "input_words",
+    "printed_input_rows",
+    "quantity_text",
     "recorded_units",
     "set_for_run",
-    "words",
 ]
 
 _TABLES = {
@@ -80,7 +80,7 @@ _ROUNDING = 1e-14  # lengths in metres, ratios: what differences of dimensions l
 Row = Mapping[str, Any]
 
 
-def input_rows(manifest: Mapping[str, Any]) -> list[dict[str, str]]:
+def printed_input_rows(manifest: Mapping[str, Any]) -> list[dict[str, str]]:
     """Table, key, value, status, where and note of the inputs, as people read them."""
     return [
         {
@@ -105,29 +105,29 @@ def set_for_run(manifest: Mapping[str, Any]) -> dict[str, str]:
 
 def recorded_units(outcomes: Mapping[str, Outcome]) -> Choice:
     """Units by kind of quantity in which the first of some results asks to be shown."""
-    choices = next((given(outcome, OUTPUT, "units") for outcome in outcomes.values()), None)
+    choices = next((input_value(outcome, OUTPUT, "units") for outcome in outcomes.values()), None)
     return unit_choice(choices or {})
 
 
-def given(outcome: Outcome, table: str, key: str) -> Any:
+def input_value(outcome: Outcome, table: str, key: str) -> Any:
     """Value of an input in SI, or text; None if there is none."""
     row = _row(outcome, table, key)
     return None if row is None else row["value"]
 
 
-def number(outcome: Outcome, table: str, key: str) -> float:
+def input_number(outcome: Outcome, table: str, key: str) -> float:
     """Value of an input that is one number, in SI.
 
     Raises:
         InputError: it is not in the record, or no number.
     """
-    value = given(outcome, table, key)
+    value = input_value(outcome, table, key)
     if not isinstance(value, float):
         raise InputError("the record of the result holds no number", key=f"{table}.{key}")
     return value
 
 
-def words(outcome: Outcome, table: str, key: str) -> str:
+def input_words(outcome: Outcome, table: str, key: str) -> str:
     """Value of an input in words; empty if there is none."""
     row = _row(outcome, table, key)
     return "" if row is None else _words(row)
@@ -209,7 +209,7 @@ def _word(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def in_words(value: float, quantity: Quantity) -> str:
+def quantity_text(value: float, quantity: Quantity) -> str:
     """A value at a key with its unit [SI in]."""
     return _shown(value, quantity.kind, unit_in_use(quantity.kind, quantity.unit))
 

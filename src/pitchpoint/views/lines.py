@@ -108,7 +108,7 @@ def overlaid(
         for k, design in enumerate(alike)
     ]
     traces = [
-        plot.plain(
+        plot.legend_line(
             key,
             *plot.continued(
                 plot.display(across, data[across].values, data),

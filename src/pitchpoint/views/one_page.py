@@ -12,7 +12,7 @@ from pitchpoint.views import show
 from pitchpoint.views.designs import input_tables, named_inputs
 from pitchpoint.views.figures import Figure, Key, Panel
 from pitchpoint.views.first_screen import beside_each_other
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.inputs import printed_input_rows
 from pitchpoint.views.point import (
     named_members,
     of_stage_by_bodies,
@@ -27,7 +27,7 @@ from pitchpoint.views.section import (
     key_figures,
     made_of,
     stages_together,
-    told_of_variants,
+    variant_warnings,
 )
 from pitchpoint.views.sections.answer import operation_words, sharing_words
 
@@ -123,7 +123,7 @@ def _given_gears(outcome: Outcome, apart: Sequence[str]) -> SectionTable:
     """Inputs of gears that no section sums up, those left as they are by default apart."""
     rows = [
         (_plain_key(row["key"]), show.pretty(row["value"]))
-        for row in input_rows(outcome.manifest)
+        for row in printed_input_rows(outcome.manifest)
         if row["table"] in ("gears", "stages", "train")
         and row["status"] not in _USUAL
         and row["key"].rpartition(".")[2] not in apart
@@ -156,7 +156,7 @@ def _of_member(key: str, outcome: Outcome) -> str:
 def _facts(outcome: Outcome) -> list[tuple[str, str]]:
     """Operating point, materials, oil and models that the numbers stand on."""
     manifest = outcome.manifest
-    rows = input_rows(manifest)
+    rows = printed_input_rows(manifest)
     materials = [
         f"{_of_member(row['key'], outcome)} {show.pretty(row['value'])}"
         for row in rows
@@ -199,7 +199,7 @@ def _standing(page: Page) -> SectionTable | None:
 
 def _doubts(page: Page) -> list[str]:
     """Warnings of all, each once, with the names of those that have it where not all do."""
-    of = told_of_variants(page.outcomes, "warnings", of_stage_by_bodies)
+    of = variant_warnings(page.outcomes, "warnings", of_stage_by_bodies)
     everyone = len(page.outcomes)
     return [t if len(of[t]) == everyone else f"{', '.join(of[t])}: {t}" for t in of]
 
@@ -247,7 +247,7 @@ def _main_figures(page: Page, shown: Iterable[Panel]) -> Iterator[Figure]:
 
 def _assumed(manifest: Mapping[str, Any]) -> str:
     """Inputs that somebody chose, in words, and how many are as usual."""
-    rows = input_rows(manifest)
+    rows = printed_input_rows(manifest)
     chosen = [
         f"{_place_of(row)}{_plain_key(row['key'])} {show.pretty(row['value'])}"
         for row in rows

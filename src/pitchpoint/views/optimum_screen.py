@@ -13,7 +13,7 @@ from pitchpoint.runs.optimum_search import AT_LIMIT
 from pitchpoint.runs.optimum_task import DESIGNS_FILE, ResultLimit, VariedKey
 from pitchpoint.runs.sought_figures import SoughtFigure
 from pitchpoint.views.columns import lines_of
-from pitchpoint.views.first_screen import Line, within, wrapped
+from pitchpoint.views.first_screen import Line, lines_within, wrapped
 
 __all__ = ["optimum_as_json", "optimum_screen"]
 
@@ -39,9 +39,9 @@ def optimum_screen(optimum: Optimum, width: int) -> list[Line]:
     doubts = [
         Line(text, "doubt")
         for warning in optimum.warnings[:_MOST_DOUBTS]
-        for text in within(f"! {warning}", width, 2)
+        for text in lines_within(f"! {warning}", width, 2)
     ]
-    foot = [Line(text, "note") for told in _foot(optimum) for text in within(told, width, 3)]
+    foot = [Line(text, "note") for told in _foot(optimum) for text in lines_within(told, width, 3)]
     return [*head, *table, *doubts, *foot]
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["StraightPath", "marks", "path_of"]
+__all__ = ["StraightPath", "contact_path", "path_marks"]
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class StraightPath:
         return bool(self.against)
 
 
-def path_of(outcome: Outcome) -> StraightPath:
+def contact_path(outcome: Outcome) -> StraightPath:
     """Path of contact of a result whose teeth have one."""
     teeth = outcome.parts["teeth"]
     ratio = float(teeth["transverse_contact_ratio"])
@@ -66,7 +66,7 @@ def _inside(teeth: xr.Dataset, ratio: float) -> dict[str, float]:
     return {str(name): place for place, name in named if -1e-9 <= place <= ratio + 1e-9}
 
 
-def marks(path: StraightPath) -> dict[str, Any]:
+def path_marks(path: StraightPath) -> dict[str, Any]:
     """Vertical lines and letters at the points of the path."""
     places: list[tuple[float, str]] = []
     for letter, place in path.points.items():

@@ -17,7 +17,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.outlines import simplified
-from pitchpoint.views.path import StraightPath, path_of
+from pitchpoint.views.path import StraightPath, contact_path
 from pitchpoint.views.point import named_members, period_of
 
 __all__ = ["Picture", "PictureBody", "picture_of"]
@@ -314,7 +314,7 @@ def picture_of(outcome: Outcome) -> Picture:
         for k, name in enumerate(map(str, teeth["body"].values))
     )
     driver = str(manifest["driver"])
-    return Picture(teeth, path_of(outcome), bodies, (names[driver], motion[driver]))
+    return Picture(teeth, contact_path(outcome), bodies, (names[driver], motion[driver]))
 
 
 def _body(layer: xr.Dataset, name: str, moved: float) -> PictureBody:

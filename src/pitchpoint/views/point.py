@@ -12,13 +12,14 @@ from pitchpoint.results.by_stage import Label
 from pitchpoint.results.variable import angle, length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.inputs import given, number
+from pitchpoint.views.inputs import input_number, input_value
 
 __all__ = [
     "OperatingPoint",
     "Period",
     "by_bodies",
     "by_members",
+    "driver_speed_ratio",
     "member_names",
     "named_members",
     "of_geometry",
@@ -26,7 +27,6 @@ __all__ = [
     "operating_point",
     "period_of",
     "ratio_words",
-    "speed_ratio",
     "way_in_a_turn",
 ]
 
@@ -75,9 +75,12 @@ class Period:
     def words(self) -> str:
         """How far the driver moves in a period."""
         if self.travels:
-            angle = show.number(float(_WAY.displayed(self.angle)))
-            return f"{angle} {show.unit(_WAY.display)} of the driver"
-        turn, unit = show.number(float(_TURN.displayed(self.angle))), show.unit(_TURN.display)
+            angle = show.number_text(float(_WAY.displayed(self.angle)))
+            return f"{angle} {show.display_unit(_WAY.display)} of the driver"
+        turn, unit = (
+            show.number_text(float(_TURN.displayed(self.angle))),
+            show.display_unit(_TURN.display),
+        )
         return f"{turn}{'' if unit == '°' else ' '}{unit} of the driver"
 
     @property
@@ -89,10 +92,10 @@ class Period:
 
 def operating_point(outcome: Outcome) -> OperatingPoint:
     """Where a result was run, whatever its gears."""
-    load = "torque" if given(outcome, "operation", "torque") is not None else "force"
+    load = "torque" if input_value(outcome, "operation", "torque") is not None else "force"
     names = {"torque": load, "speed": "speed", "temperature": "temperature"}
     return OperatingPoint(
-        **{name: number(outcome, "operation", key) for name, key in names.items()}
+        **{name: input_number(outcome, "operation", key) for name, key in names.items()}
     )
 
 
@@ -166,7 +169,11 @@ def _in_bodies(record: Mapping[str, Any], text: str) -> str:
         body = bodies.get(at["member"]) or bodies[f"{at['member'][0].lower()}{at['member'][1:]}"]
         if at["label"]:
             return f": {body}"
-        return show.the(body) if at["member"] in bodies else show.sentence(show.the(body), False)
+        return (
+            show.with_article(body)
+            if at["member"] in bodies
+            else show.sentence(show.with_article(body), False)
+        )
 
     every = "|".join(re.escape(name) for own in bodies for name in (own, own.capitalize()))
     return re.sub(rf'"[^"]*"|(?P<label>: (?=(?:{every}): ))?\b(?P<member>{every})\b', named, text)
@@ -184,7 +191,7 @@ def _by_bodies(record: Mapping[str, Any]) -> list[str]:
     return bodies if len(bodies) == len(members) else members
 
 
-def speed_ratio(outcome: Outcome) -> float:
+def driver_speed_ratio(outcome: Outcome) -> float:
     """Speed of the driver over that of the loaded member; NaN where one of them travels."""
     manifest = outcome.manifest
     motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
@@ -196,8 +203,8 @@ def speed_ratio(outcome: Outcome) -> float:
 
 def ratio_words(outcome: Outcome) -> str:
     """That ratio as a number; empty where one of them travels."""
-    ratio = speed_ratio(outcome)
-    return show.number(ratio, 6) if isfinite(ratio) else ""
+    ratio = driver_speed_ratio(outcome)
+    return show.number_text(ratio, 6) if isfinite(ratio) else ""
 
 
 def way_in_a_turn(outcome: Outcome) -> str:
@@ -207,7 +214,7 @@ def way_in_a_turn(outcome: Outcome) -> str:
         return ""
     motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
     ratio = abs(float(motion[manifest["loaded"]]) / float(motion[manifest["driver"]]))
-    return f"{show.number(float(_WAY.displayed(2.0 * np.pi * ratio)))} {show.unit(_WAY.display)}"
+    return f"{show.number_text(float(_WAY.displayed(2.0 * np.pi * ratio)))} {show.display_unit(_WAY.display)}"
 
 
 def period_of(outcome: Outcome) -> Period:
@@ -217,7 +224,7 @@ def period_of(outcome: Outcome) -> Period:
     return Period(
         angle,
         "driver" in manifest["travels"],
-        angle / number(outcome, "operation", "speed"),
+        angle / input_number(outcome, "operation", "speed"),
         str(manifest["pitch"]),
         str(manifest["against"]),
     )

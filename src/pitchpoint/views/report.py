@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import double_precision
-from pitchpoint.kept import base_folder, prepared, read, write
+from pitchpoint.kept import base_folder, prepared_folder, read_kept, write_kept
 from pitchpoint.published.registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
@@ -34,9 +34,9 @@ from pitchpoint.views.section import (
     Section,
     SectionTable,
     Variants,
+    page_words,
     panels,
-    said,
-    told_of_variants,
+    variant_warnings,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from pitchpoint.sizing.sizing import Sizing
 
-__all__ = ["environment", "packed", "packed_plotly", "page_of", "render", "write_report"]
+__all__ = ["environment", "packed", "packed_plotly", "page_of", "report_page", "write_report"]
 
 
 @double_precision()
@@ -78,14 +78,14 @@ def write_report(
 
         return write_text(Path(path), render_sizing(outcomes))
     of_case = cast("Mapping[str, Outcome]", outcomes)
-    return write_text(Path(path), render(of_case, designs=designs, units=units))
+    return write_text(Path(path), report_page(of_case, designs=designs, units=units))
 
 
 _OF_ALL = ("answer", "formulas", "compared", "models", "sources")
 """Sections that are open whatever a publication is about."""
 
 
-def render(
+def report_page(
     outcomes: Mapping[str, Outcome], *, designs: bool = False, units: UnitsByKind | None = None
 ) -> str:
     """The report as text.
@@ -115,7 +115,7 @@ def _rendered(outcomes: Mapping[str, Outcome], *, designs: bool) -> str:
             cases=page.cases,
             designs=designs,
             variants=[*outcomes],
-            implausible=told_of_variants(outcomes, "implausible"),
+            implausible=variant_warnings(outcomes, "implausible"),
             cited=any(one.manifest["sources"] for one in outcomes.values()),
             sections=sections,
             absent=_absent(bare, lacking),
@@ -145,7 +145,7 @@ def page_of(template: str, sections: Sequence[Mapping[str, Any]], **words: str) 
 
 def _made(section: Section, page: Page) -> dict[str, Any]:
     """What the template shows of a section."""
-    title, short = said(section.title, page), said(section.short, page)
+    title, short = page_words(section.title, page), page_words(section.short, page)
     beside = _aside(section, page)
     return {
         "name": section.name,
@@ -188,7 +188,7 @@ def _absent(page: Page, lacking: Mapping[Section, str | None]) -> list[tuple[lis
     reasons: dict[str, list[str]] = {}
     for section, why in lacking.items():
         if why:
-            reasons.setdefault(why, []).append(said(section.short, page))
+            reasons.setdefault(why, []).append(page_words(section.short, page))
     return [(names, why) for why, names in reasons.items()]
 
 
@@ -203,13 +203,13 @@ def packed_plotly() -> str:
     """plotly.js in the plane, compressed: most of a page; kept, since packing it takes half a second."""
     folder = _kept_pages()
     path = None if folder is None else folder / f"plotly-plane-{version('plotly')}"
-    packed = None if path is None else read(path)
+    packed = None if path is None else read_kept(path)
     if packed is None:
         from plotly.offline import get_plotlyjs
 
         text = _as_text(_in_the_plane(get_plotlyjs()))
         if path is not None:
-            write(path, text.encode())
+            write_kept(path, text.encode())
         return text
     return packed.decode()
 
@@ -277,7 +277,7 @@ _PLAIN = str.maketrans("<>&", ".:,")
 def _kept_pages() -> Path | None:
     """Folder of what pages are made of; None where the user has none that is private."""
     try:
-        return prepared(base_folder() / "pages")
+        return prepared_folder(base_folder() / "pages")
     except RuntimeError:
         return None
 

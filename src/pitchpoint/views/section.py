@@ -34,8 +34,8 @@ __all__ = [
     "Section",
     "SectionTable",
     "Variants",
+    "blocks_by_variant",
     "by_mesh",
-    "by_variant",
     "figures_by_members",
     "key_figure",
     "key_figures",
@@ -47,13 +47,13 @@ __all__ = [
     "of_rows",
     "of_source",
     "of_trains",
+    "page_words",
     "panels",
     "reason",
-    "said",
     "stages_together",
     "tabbed",
-    "told_of_variants",
-    "turned",
+    "transposed_table",
+    "variant_warnings",
     "without_rows",
     "without_trains",
 ]
@@ -100,7 +100,9 @@ _ACROSS = 4
 """Columns of numbers that stand on a narrow screen; a table of more is wide."""
 
 
-def turned(heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = "") -> SectionTable:
+def transposed_table(
+    heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = ""
+) -> SectionTable:
     """A table of a few things with many figures each, which stand under each other: it is then narrow.
 
     Args:
@@ -109,7 +111,7 @@ def turned(heads: Sequence[str], columns: Sequence[Sequence[str]], first: str = 
         first: head of the names.
 
     Example:
-        >>> table = turned(["z", "m"], [["gear 1", "20", "2 mm"], ["gear 2", "40", "2 mm"]])
+        >>> table = transposed_table(["z", "m"], [["gear 1", "20", "2 mm"], ["gear 2", "40", "2 mm"]])
         >>> table.head, table.rows
         (['', 'gear 1', 'gear 2'], [('z', '20', '40'), ('m', '2 mm', '2 mm')])
     """
@@ -441,7 +443,7 @@ def _manifest_of(manifest: Mapping[str, Any], number: Label) -> dict[str, Any]:
     return {**manifest, **record, "inputs": rows}
 
 
-def by_variant(
+def blocks_by_variant(
     page: Page, part: str, show: Callable[[int, Outcome], Iterator[Block]]
 ) -> Iterator[Block]:
     """Blocks of every variant that has a part, see `tabbed`."""
@@ -693,7 +695,7 @@ def _settled(block: Block) -> Block:
     return block
 
 
-def told_of_variants(
+def variant_warnings(
     outcomes: Mapping[str, Outcome],
     kind: str,
     told: Callable[[Outcome, str], str] = lambda _, text: text,
@@ -835,6 +837,6 @@ def reason(page: Page, *parts: str) -> str:
     return next(filter(None, reasons), "")
 
 
-def said(words: Words, page: Page) -> str:
+def page_words(words: Words, page: Page) -> str:
     """Words, or what the function gives for the page."""
     return words if isinstance(words, str) else words(page)

@@ -16,10 +16,11 @@ __all__ = [
     "axis_title",
     "bracketed",
     "described",
+    "display_unit",
     "displayed",
     "first_clauses",
     "handy",
-    "number",
+    "number_text",
     "one_line",
     "points",
     "pretty",
@@ -29,10 +30,9 @@ __all__ = [
     "signed",
     "span",
     "subscripts",
-    "the",
-    "unit",
     "unit_of",
     "whole_clauses",
+    "with_article",
 ]
 
 _UNITS = {
@@ -80,11 +80,11 @@ _INDEXED = re.compile(
 _LAST_UNIT = re.compile(r"(?<=\d) (um|urad|degC|degF|mm2/s|kg/m3/K|kg/m3)\b(?![/0-9])")
 
 
-def unit(name: str) -> str:
+def display_unit(name: str) -> str:
     """Unit as printed; empty for plain numbers.
 
     Example:
-        >>> unit("um")
+        >>> display_unit("um")
         'µm'
     """
     return _UNITS.get(name, name)
@@ -123,7 +123,7 @@ def subscripts(text: str) -> str:
     return _INDEXED.sub(r"\1<sub>\2</sub>", text)
 
 
-def number(value: float, digits: int = 4) -> str:
+def number_text(value: float, digits: int = 4) -> str:
     """Number as people read it: so many significant digits, no zeros behind them; a whole one whole.
 
     Args:
@@ -132,7 +132,7 @@ def number(value: float, digits: int = 4) -> str:
         digits: significant ones; fewer for what is itself an estimate, more for what is given.
 
     Example:
-        >>> [number(value) for value in (0.74199, 1.0, 12345.0, 12345.6, 9275724.0, 0.0005542)]
+        >>> [number_text(value) for value in (0.74199, 1.0, 12345.0, 12345.6, 9275724.0, 0.0005542)]
         ['0.742', '1', '12345', '12350', '9.276e6', '5.542e−4']
     """
     if not isfinite(value):
@@ -178,7 +178,7 @@ def described(name: str, of: Any = None) -> Variable:
 
 def unit_of(name: str, of: Any = None) -> str:
     """Display unit of a variable as printed, see `described`."""
-    return unit(described(name, of).display)
+    return display_unit(described(name, of).display)
 
 
 def bracketed(words: str, variable: Variable) -> str:
@@ -189,7 +189,7 @@ def bracketed(words: str, variable: Variable) -> str:
         >>> bracketed("backlash j_bn", VARIABLES["normal_backlash"])
         'backlash j_bn [µm]'
     """
-    shown = unit(variable.display)
+    shown = display_unit(variable.display)
     return f"{words} [{shown}]" if shown else words
 
 
@@ -223,7 +223,7 @@ def quantity(name: str, value: float, *, with_unit: bool = True, of: Any = None)
         return "undefined, no power" if variable.display == "%" else "undefined"
     rounding = name in _DIFFERENCES and abs(value) < _OF_DIFFERENCES
     shown = float(displayed(variable, 0.0 if rounding else value))
-    return _with_unit(shown, variable.display) if with_unit else number(shown)
+    return _with_unit(shown, variable.display) if with_unit else number_text(shown)
 
 
 def quantities(name: str, values: Sequence[float], of: Any = None) -> tuple[str, list[str]]:
@@ -237,7 +237,7 @@ def quantities(name: str, values: Sequence[float], of: Any = None) -> tuple[str,
     shown, display = handy(
         [float(displayed(variable, value)) for value in values], variable.display
     )
-    return unit(display), [number(value) for value in shown]
+    return display_unit(display), [number_text(value) for value in shown]
 
 
 def handy(values: Sequence[float], display: str) -> tuple[list[float], str]:
@@ -265,7 +265,7 @@ def handy(values: Sequence[float], display: str) -> tuple[list[float], str]:
 def _with_unit(value: float, display: str) -> str:
     """Number with its unit; with a larger or smaller one where it would need a power of ten."""
     (shown,), display = handy([value], display)
-    return f"{number(shown)} {unit(display)}".strip()
+    return f"{number_text(shown)} {display_unit(display)}".strip()
 
 
 _LARGER = {
@@ -305,7 +305,7 @@ def points(part: float) -> str:
         ('1.23 percentage points', 'less than 0.001 percentage points')
     """
     small = 0.0 < abs(100.0 * part) < 10.0**_SMALLEST
-    return f"{'less than 0.001' if small else number(100.0 * part)} percentage points"
+    return f"{'less than 0.001' if small else number_text(100.0 * part)} percentage points"
 
 
 def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
@@ -322,11 +322,11 @@ def span(low: str, high: str, values: Sequence[float], of: Any = None) -> str:
     return f"{value if unit_of_low == unit_of_high else lower} to {upper}"
 
 
-def the(member: str) -> str:
+def with_article(member: str) -> str:
     """Name of a body in a sentence.
 
     Example:
-        >>> the("rack"), the("gear 2"), the("stage 1: carrier")
+        >>> with_article("rack"), with_article("gear 2"), with_article("stage 1: carrier")
         ('the rack', 'gear 2', 'stage 1: carrier')
     """
     return member if re.search(r"\d", member) else f"the {member}"

@@ -176,7 +176,7 @@ def _gear_cells(design: SizedDrive) -> list[str]:
 
 def _figure_cells(design: SizedDrive) -> list[str]:
     figures = [_shown(name, float(getattr(design, name))) for name in _FIGURES]
-    return [show.number(value) if isfinite(value) else "–" for value in figures]
+    return [show.number_text(value) if isfinite(value) else "–" for value in figures]
 
 
 def _front_table(sizing: Sizing, first: str, second: str) -> SectionTable:

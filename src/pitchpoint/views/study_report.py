@@ -14,7 +14,7 @@ import xarray as xr
 from jaxtyping import Bool, Float, Int
 
 from pitchpoint._jax import double_precision
-from pitchpoint.cases.handed_over import hand_over
+from pitchpoint.cases.handed_over import write_case_copy
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.record import CASE
 from pitchpoint.results.rounding import ROUNDING
@@ -173,7 +173,7 @@ class _Designs:
         return name if is_key else str(self.study[name].attrs.get("long_name", name))
 
     def unit(self, name: str) -> str:
-        return show.unit(str(self.study[name].attrs.get("units", "1")))
+        return show.display_unit(str(self.study[name].attrs.get("units", "1")))
 
 
 def render_study(study: xr.Dataset, *, case_file: Path | None = None) -> str:
@@ -204,7 +204,7 @@ def write_study_folder(study: xr.Dataset, case: Case, folder: Path) -> None:
         variant, _ = with_tolerances(variant, tolerances)
     document = variant.document()
     tree = {key: table for key, table in document.tree.items() if key != "study"}
-    hand_over(replace(document, tree=tree), folder)
+    write_case_copy(replace(document, tree=tree), folder)
     write_text(folder / "report.html", render_study(study, case_file=folder / CASE))
 
 
@@ -394,7 +394,7 @@ class _Summed:
             words = f"{words} by {self.designs.laws[law]}"
         if self.designs.study.attrs.get("tolerances"):
             _, low, *_, high, _ = self.spans[name, law]["quantiles"]
-            ends = f"{show.number(float(low), 5)} to {show.number(float(high), 5)} {unit}".rstrip()
+            ends = f"{show.number_text(float(low), 5)} to {show.number_text(float(high), 5)} {unit}".rstrip()
             return f"{computed}; {words}: {ends} of 98 in 100."
         value, _, place = self._best(name, law)
         with_unit = f"{value} {unit}".rstrip()
@@ -405,7 +405,7 @@ class _Summed:
         span = self.spans[name, law]
         sense = _BETTER[name]
         value = float(span["quantiles"][0 if sense == "less" else -1])
-        return show.number(value, 5), value, int(span["ends"][sense])
+        return show.number_text(value, 5), value, int(span["ends"][sense])
 
     def _answer(self, *, tolerances: bool) -> Iterator[Block]:
         attributes = self.designs.study.attrs
@@ -423,7 +423,7 @@ class _Summed:
                 ]
                 for (name, law), span in self.spans.items()
                 if name in self.main
-                for cells in [[show.number(float(value), 5) for value in span["quantiles"]]]
+                for cells in [[show.number_text(float(value), 5) for value in span["quantiles"]]]
             ]
             caption = "Figures that so many of 100 designs lie below"
             yield SectionTable([*head, *ends], rows, caption=caption, names=len(head), wide=True)
@@ -461,7 +461,11 @@ class _Summed:
         """What a table has of a design."""
         law = law if name not in self.keys and self._laws_of(name) > 1 else 0
         value = self.designs.read(name, law, np.array([number]))[0]
-        return show.number(float(value), 5) if np.asarray(value).dtype.kind in "fiu" else str(value)
+        return (
+            show.number_text(float(value), 5)
+            if np.asarray(value).dtype.kind in "fiu"
+            else str(value)
+        )
 
     def _ranges(self) -> Iterator[list[str]]:
         for key in self.keys:
@@ -470,7 +474,7 @@ class _Summed:
                 low, high = min(p.min() for p in parts), max(p.max() for p in parts)
                 yield [
                     self.designs.title(key),
-                    *(show.number(float(end), 5) for end in (low, high)),
+                    *(show.number_text(float(end), 5) for end in (low, high)),
                 ]
             else:
                 names = np.unique(self.designs.study[key].values.astype(str))
@@ -610,7 +614,8 @@ class _Summed:
         return bars, (
             "Spearman's rank correlation: 1 where a figure rises with a key throughout, −1 where it falls, "
             "near 0 where it hardly hangs on it, or rises and falls again. Of "
-            f"{len(self.even)} designs those within ±{show.number(float(chance), 2)} may be chance. Parts of "
+            f"{len(self.even)} designs those within ±{show.number_text(float(chance), 2)} may be "
+            "chance. Parts of "
             'the variance, Sobol\' indices, need `how = "saltelli"`.'
         )
 

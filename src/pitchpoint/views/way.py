@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-__all__ = ["at_origin", "beside", "place_of"]
+__all__ = ["at_origin", "carrying_or_next", "places_on_axis"]
 
 
-def place_of(data: xr.Dataset) -> np.ndarray:
+def places_on_axis(data: xr.Dataset) -> np.ndarray:
     """Place of each contact in the unit of the axis along the way."""
     return np.asarray(float(data["path"].attrs["scale"]) * data["path"].values)
 
@@ -27,7 +27,7 @@ def at_origin() -> dict[str, Any]:
     }
 
 
-def beside(carries: np.ndarray) -> np.ndarray:
+def carrying_or_next(carries: np.ndarray) -> np.ndarray:
     """True for places that carry and for their neighbours, in order."""
     wide = carries.copy()
     wide[1:] |= carries[:-1]

@@ -4,7 +4,7 @@ from jaxtyping import Array, Float
 from scipy.constants import gas_constant
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, as_array
+from pitchpoint.factored import Numbers, product_array
 
 __all__ = ["fractional_film_defect"]
 
@@ -51,7 +51,7 @@ def fractional_film_defect(
         >>> f"{float(bare):.2e}"
         '9.93e-04'
     """
-    speed = as_array(sliding)
+    speed = product_array(sliding)
     leaving = jnp.asarray(
         molecule_diameter
         / vibration_period

@@ -12,9 +12,9 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.bodies import completed, independent
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.programs import program
-from pitchpoint.wear.history import Cells, Start, WearModel, reached, travelled, turn_alone
+from pitchpoint.wear.history import Cells, Start, WearModel, reached_ends, travelled, turn_alone
 
-__all__ = ["Inputs", "Sensitivity", "changed", "march_sensitivities", "varied"]
+__all__ = ["Inputs", "Sensitivity", "march_sensitivities", "scalable_inputs", "scaled_inputs"]
 
 Inputs = tuple[Design, Operation, WearModel]
 Values = Float[np.ndarray, "..."]
@@ -36,19 +36,21 @@ class Sensitivity(NamedTuple):
     life: float
 
 
-def varied(inputs: Inputs) -> list[str]:
+def scalable_inputs(inputs: Inputs) -> list[str]:
     """Names of the inputs that can be changed by a part of themselves: finite ones that are not zero."""
     named = _named(inputs)
     values = jax.device_get(named)
     return [name for name in named if np.isfinite(values[name]) and values[name] != 0.0]
 
 
-def changed(inputs: Inputs, names: Sequence[str], part: Float[Array, " input"] | Values) -> Inputs:
+def scaled_inputs(
+    inputs: Inputs, names: Sequence[str], part: Float[Array, " input"] | Values
+) -> Inputs:
     """Inputs of which some are larger by a part of themselves; what follows from them follows.
 
     Args:
         inputs: design, operating point and how material goes.
-        names: as `varied` has them.
+        names: as `scalable_inputs` has them.
         part: of each; temperatures count from absolute zero.
     """
     inputs_by_name = _named(inputs)
@@ -159,7 +161,7 @@ def march_sensitivities(
     the march took, by the same method: s' = df/dh s + df/dx for d h/d ln x = s. The turns N to a depth h
     follow from h(N, x): d ln N/d ln x = - s/(N dh/dN). Both belong to the place that is deepest at the end.
     """
-    names = tuple(varied(inputs))
+    names = tuple(scalable_inputs(inputs))
     moved = np.zeros((len(names), *depth.shape[1:]))
     felt = float(updated)
 
@@ -206,11 +208,13 @@ def _rate(
     """What a turn wears off, and its derivatives by the logarithm of each input with a depth that moves."""
 
     def turn(part: Array, depth: Array) -> Array:
-        design, operation, wear = changed(inputs, names, part)
+        design, operation, wear = scaled_inputs(inputs, names, part)
         start = Start.of(design, models, parts)
         share = models.share(design, start.contacts, operation.load, start.body, start.teeth)
         # Cells follow the flanks.
-        flank, across, span = reached(*travelled(design, operation, models, start.engaged(share)))
+        flank, across, span = reached_ends(
+            *travelled(design, operation, models, start.engaged(share))
+        )
         moved_cells = replace(cells, flank=flank, across=across, span=span)
         return turn_alone(design, operation, models, wear, moved_cells, start, depth).depth
 

@@ -23,7 +23,7 @@ from pitchpoint.efficiency.quasi_static import (
     state,
 )
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, as_array
+from pitchpoint.factored import Arrays, product_array
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import flanks_in_turn
@@ -45,15 +45,15 @@ __all__ = [
     "DriverTurn",
     "Start",
     "WearModel",
-    "as_new",
     "cells_on",
-    "extents",
     "midpoints",
-    "one_turn",
-    "reached",
+    "reached_ends",
+    "slice_extents",
     "travelled",
     "turn_alone",
+    "unworn_start",
     "wear_of",
+    "wear_of_turn",
     "worn_contacts",
 ]
 
@@ -228,7 +228,7 @@ class WearModel(eqx.Module):
             arguments["asperity_share"] = evaluate(self.asperities, at)
         if "film_defect" in wanted and self.defect is not None:
             warm = temperature + self._flash(at, friction)
-            of_defect = {"sliding": as_array(at.sliding), "temperature": warm}
+            of_defect = {"sliding": product_array(at.sliding), "temperature": warm}
             arguments["film_defect"] = fractional_film_defect(**of_defect, **self.defect)
         flank_rate, mate_rate = (
             jnp.broadcast_to(self.law(**{**arguments, **constants}), at.load.shape)
@@ -244,8 +244,8 @@ class WearModel(eqx.Module):
             half, area = at.half_width, 2.0 * at.half_width * at.contacts.weight
         else:
             half, area = at.semi_axis_along, jnp.pi * at.semi_axis_along * at.semi_axis_across
-        power = friction * at.load * as_array(at.sliding)
-        speeds = as_array(at.speed_a), as_array(at.speed_b)
+        power = friction * at.load * product_array(at.sliding)
+        speeds = product_array(at.speed_a), product_array(at.speed_b)
         rubs = (at.load > 0.0) & (jnp.abs(speeds[0]) + jnp.abs(speeds[1]) > 0.0)
         rise = shared_flash(
             heat=jnp.where(rubs, power, 0.0) / jnp.where(rubs, area, 1.0),
@@ -391,7 +391,7 @@ class Start(eqx.Module):
         return Engagement(self.phase, self.weight, felt, share, None, self.parts)
 
 
-def as_new(
+def unworn_start(
     design: Design, operation: Operation, models: Models, *, parts: int, count: int
 ) -> tuple[Start, Cells]:
     """What stays of a design with flanks as new, and cells on its flanks.
@@ -437,7 +437,7 @@ def travelled(
     smooth = models.holding(jnp.zeros((1, 1, 1)))
     at = state(design, operation, known.phase, smooth, engaged=known).conditions
     lasts = known.weight * design.period / at.speed
-    speeds = [jnp.broadcast_to(as_array(v), at.load.shape) for v in (at.speed_a, at.speed_b)]
+    speeds = [jnp.broadcast_to(product_array(v), at.load.shape) for v in (at.speed_a, at.speed_b)]
     return at, jnp.abs(jnp.stack(speeds)) * lasts
 
 
@@ -452,7 +452,7 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
     Raises:
         InputError: a contact stands still on a flank.
     """
-    flank, across, span = jax.device_get(reached(at, ways))
+    flank, across, span = jax.device_get(reached_ends(at, ways))
     if not np.all(np.diff(flank) > 0.0):
         raise InputError(
             "one flank stands still under its contact and has no depth per turn; it is for flanks that roll"
@@ -466,7 +466,7 @@ def cells_on(at: Conditions, ways: Float[Array, "2 pair slice node"], count: int
 
 
 @program
-def reached(
+def reached_ends(
     at: Conditions, ways: Float[Array, "2 pair slice node"]
 ) -> tuple[Float[Array, "2 2"], Two, Two]:
     """Ends of both flanks and of the face that contacts reach, and the span of contacts [m].
@@ -477,7 +477,7 @@ def reached(
     """
     contacts, active = at.contacts, at.contacts.active
     line = at.shape == "line"
-    reach = 0.5 * extents(contacts) if line else ROOM * jnp.max(at.semi_axis_across)
+    reach = 0.5 * slice_extents(contacts) if line else ROOM * jnp.max(at.semi_axis_across)
 
     def ends(places: Lanes, half: Each) -> Two:
         low = jnp.min(jnp.where(active, places - half, jnp.inf))
@@ -499,7 +499,7 @@ def reached(
     return jnp.stack(flanks), across, jnp.stack([mean(half), aside])
 
 
-def extents(contacts: Contacts) -> Lanes:
+def slice_extents(contacts: Contacts) -> Lanes:
     """How far each slice of a contact line reaches across the face [m].
 
     Args:
@@ -512,7 +512,7 @@ def extents(contacts: Contacts) -> Lanes:
     return contacts.weight * axial
 
 
-def one_turn(
+def wear_of_turn(
     design: Design,
     operation: Operation,
     models: Models,
@@ -560,7 +560,7 @@ def turn_alone(
     start: Start,
     depth: Depths,
 ) -> DriverTurn:
-    """`one_turn`, all traced together: for meshes with few contacts, and for many drives.
+    """`wear_of_turn`, all traced together: for meshes with few contacts, and for many drives.
 
     Arguments as there.
     """
@@ -654,7 +654,7 @@ def wear_of(
     # Per turn of the driver, and of each flank: engagements of a period go round among all flanks.
     periods = 2.0 * jnp.pi / period
     lasts = known.weight * period / at.speed
-    slid = jnp.where(carries, at.load * as_array(at.sliding), 0.0) * lasts
+    slid = jnp.where(carries, at.load * product_array(at.sliding), 0.0) * lasts
     turns = wear.mates * periods / flanks_in_turn(design.mesh)
     gone = jnp.stack([turns[k] * rate * slid for k, rate in enumerate(rates)])
     along = jnp.stack([_spread(at, path, known.weight) for path in ways])
@@ -664,7 +664,7 @@ def wear_of(
         rubbed = jnp.stack([turns[k] * rate for k, rate in enumerate(rates)]) * jnp.where(
             carries, at.line_load, 0.0
         )
-        slid_over = as_array(at.sliding) * period / at.speed
+        slid_over = product_array(at.sliding) * period / at.speed
         passed, held = ways / known.weight, along - ways
         values = jnp.stack([rubbed, slid_over + jnp.zeros_like(rubbed), passed, held])
         places = _of_places(_at_places(values, cells.nearest, known.nodes))
@@ -722,7 +722,7 @@ def _laid(
     flank = jnp.broadcast_to(contacts.flank, gone.shape)
     reaches = _reaches(cells, at, jnp.any(gone > 0.0, axis=0))
     if at.shape == "line":
-        extent = extents(contacts)
+        extent = slice_extents(contacts)
         # A line that leans sweeps a strip of the face faster than it moves at right angles to itself.
         ways = ways * contacts.weight / extent
         if cells.strips > 1:
@@ -786,7 +786,9 @@ def _reaches(
     edges_across = start + (end - start) * jnp.arange(1, cells.strips) / cells.strips
     width = jnp.broadcast_to(contacts.width, lanes)[..., None]
     if at.shape == "line":
-        across = jnp.clip((edges_across - width) / extents(contacts)[..., None] + 0.5, 0.0, 1.0)
+        across = jnp.clip(
+            (edges_across - width) / slice_extents(contacts)[..., None] + 0.5, 0.0, 1.0
+        )
     else:
         semi = jnp.broadcast_to(at.semi_axis_across, lanes)
         semi = jnp.where(wears, semi, 1.0)[..., None]

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, log, root
+from pitchpoint.factored import Numbers, log, square_root
 from pitchpoint.lubrication import conditions
 
 __all__ = [
@@ -128,7 +128,7 @@ def janakiraman_2013(
         '1.38e-21'
     """
     loaded = jnp.asarray(line_load) / (modulus * radius)
-    rough = root(jnp.asarray(ra_1) ** 2 + jnp.asarray(ra_2) ** 2) / radius
+    rough = square_root(jnp.asarray(ra_1) ** 2 + jnp.asarray(ra_2) ** 2) / radius
     viscous = jnp.asarray(pressure_viscosity) * modulus
     total = (
         jnp.log(3.981e29)

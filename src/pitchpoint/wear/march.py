@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from pitchpoint.wear.history import DriverTurn
 
-__all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "after", "as_new"]
+__all__ = ["FIRST", "End", "Limit", "Rate", "Reached", "unworn_flanks", "wear_step"]
 
 Values = NDArray[np.float64]
 End = Literal[
@@ -110,7 +110,7 @@ class Reached:
         return largest
 
 
-def as_new(rate: Callable[[Values], Rate], shape: tuple[int, int, int]) -> Reached:
+def unworn_flanks(rate: Callable[[Values], Rate], shape: tuple[int, int, int]) -> Reached:
     """Flanks from which nothing is gone.
 
     Args:
@@ -125,7 +125,7 @@ def as_new(rate: Callable[[Values], Rate], shape: tuple[int, int, int]) -> Reach
     return Reached(0.0, none, rate_as_new, np.zeros(2), step, end)
 
 
-def after(
+def wear_step(
     before: Reached,
     rate: Callable[[Values], Rate],
     limit: Limit,

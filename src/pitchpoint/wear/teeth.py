@@ -8,7 +8,7 @@ from numpy.polynomial.chebyshev import chebfit, chebval
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.contact.contacts import along
+from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.efficiency.quasi_static import contacts_at
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion
@@ -165,7 +165,7 @@ def _beside_pitch_line(mesh: Mesh, start: Start) -> Bool[np.ndarray, "place slic
     """Places on slices beside which the sliding turns along a line, of all positions but where paths end."""
     # The sliding turns where it does, whoever drives.
     motion = nominal_motion(jax.device_get(mesh), *jax.device_get(mesh_ends(mesh)))
-    slip = jax.device_get(along(start.contacts.slip_arm, motion))
+    slip = jax.device_get(contact_velocity(start.contacts.slip_arm, motion))
     turns = np.sign(slip[:, 1:]) != np.sign(slip[:, :-1])
     beside = np.zeros(slip.shape, dtype=bool)
     beside[:, 1:] |= turns

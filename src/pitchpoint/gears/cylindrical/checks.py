@@ -15,10 +15,10 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
-from pitchpoint.gears.designs import Faults, Number, each, padded
+from pitchpoint.gears.designs import Faults, Number, over_designs, padded
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
 from pitchpoint.programs import program
-from pitchpoint.roots import root
+from pitchpoint.roots import find_root
 
 if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical.pair import CylindricalPair
@@ -218,7 +218,7 @@ def check_cylindrical_pairs(
         group: with an axis of designs in front, of one static structure.
         least_backlash: of each design, see `check_cylindrical`.
     """
-    alike = each(_plain, group, 1)
+    alike = over_designs(_plain, group, 1)
     count = len(group.module)
     numbers = jax.device_get(_measures_of_many(padded(alike, count)))
     columns = [{key: values.tolist() for key, values in part.items()} for part in numbers]
@@ -332,7 +332,7 @@ def _measures(pair: CylindricalPair) -> list[dict[str, Float[Array, ""]]]:
 
 @program
 def _measures_of_many(group: CylindricalPair) -> list[dict[str, Float[Array, " design"]]]:
-    return each(_measures, group, 1)
+    return over_designs(_measures, group, 1)
 
 
 def _pair_measures(pair: CylindricalPair) -> dict[str, Float[Array, ""]]:
@@ -406,7 +406,7 @@ def _room_at_ring_root(gear: InvoluteGear) -> tuple[Float[Array, ""], Float[Arra
     most = (jnp.abs(gear.root_radius) - base) / gear.module
     if cutting is not None:
         most = (cutting.tip_radius - cutting.base_radius) / gear.module
-    largest = root(filled, jnp.minimum(0.1, most / 2.0), most)[0]
+    largest = find_root(filled, jnp.minimum(0.1, most / 2.0), most)[0]
     return deepest, largest
 
 

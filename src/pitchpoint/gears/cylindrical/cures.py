@@ -13,7 +13,7 @@ from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE, LEAST_TIP, 
 from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, RACK, SHIFT
 from pitchpoint.input.quantities import Quantity
 
-__all__ = ["change_words", "cures", "told_with_cures"]
+__all__ = ["change_words", "cures", "error_with_cures"]
 
 MOST_CURES = 2
 
@@ -200,11 +200,11 @@ def _at_its_distance(
     return {key: _STEPS[key].written(value) for key, value in both.items()}
 
 
-def told_with_cures(message: str, changes: Sequence[Cure]) -> str:
+def error_with_cures(message: str, changes: Sequence[Cure]) -> str:
     """A refusal with the changes that mend it.
 
     Example:
-        >>> told_with_cures("too short", [{"addendum": [1.0, 0.872]}, {"pressure_angle": "25 deg"}])
+        >>> error_with_cures("too short", [{"addendum": [1.0, 0.872]}, {"pressure_angle": "25 deg"}])
         'too short; it runs with addendum = [1, 0.872], or with pressure_angle = "25 deg"'
     """
     return RUNS_WITH.join(filter(None, (message, ", or with ".join(map(change_words, changes)))))

@@ -11,10 +11,18 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
-from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_for
+from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_for_contact_ratio
 from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.designs import Designs, Group, alike, check_counts, each, padded, rows
+from pitchpoint.gears.designs import (
+    Designs,
+    Group,
+    check_counts,
+    designs_by_flags,
+    over_designs,
+    padded,
+    select_designs,
+)
 from pitchpoint.gears.involute import usual_dedenda
 from pitchpoint.programs import program
 from pitchpoint.status import Code, Status
@@ -23,7 +31,7 @@ __all__ = [
     "build_cylindrical_pair",
     "build_cylindrical_pairs",
     "cylindrical_pairs_apart",
-    "designed",
+    "designed_pair",
     "with_bores",
 ]
 
@@ -104,7 +112,7 @@ def build_cylindrical_pair(
     ratio = float(contact_ratio)
     if not _in_reach(ratio):
         check_cylindrical(pair)  # says why, in gear words
-    return dataclasses.replace(pair, lanes=lanes_for(ratio, helical=helical))
+    return dataclasses.replace(pair, lanes=lanes_for_contact_ratio(ratio, helical=helical))
 
 
 def with_bores(pair: CylindricalPair, bores: tuple[float, float] | None) -> CylindricalPair:
@@ -180,7 +188,9 @@ def cylindrical_pairs_apart(
     """
     for batch, ratio, which in _groups(values):
         lanes = [
-            lanes_for(contact_ratio, helical=batch.helical) if _in_reach(contact_ratio) else 0
+            lanes_for_contact_ratio(contact_ratio, helical=batch.helical)
+            if _in_reach(contact_ratio)
+            else 0
             for contact_ratio in np.asarray(ratio).tolist()
         ]
         structures = {
@@ -203,13 +213,13 @@ def _groups(values: Values) -> Iterator[Grown]:
     slices = bound.arguments.pop("slices")
     table = _table(bound.arguments)
     flags = np.stack([table["helix_angle"] != 0.0, table["teeth"][:, 1] < 0], axis=1)
-    for kind, numbers in alike(flags):
+    for kind, numbers in designs_by_flags(flags):
         opened = _opened(_of(table, numbers) | {"slices": slices}, *kind)
         for pair, ratio, which in _grown(opened, axes=1):
             yield pair, ratio, numbers[which]
 
 
-def designed(pair: CylindricalPair) -> tuple[CylindricalPair, Status]:
+def designed_pair(pair: CylindricalPair) -> tuple[CylindricalPair, Status]:
     """The pair with all that follows from its dimensions, and whether it can run.
 
     A pure function that can be traced, vectorised and differentiated: `jax.vmap` makes it that of a batch.
@@ -288,7 +298,7 @@ def _opened(given: Values, helical: bool, internal: bool) -> CylindricalPair:
     def one(parts: Values) -> CylindricalPair:
         return CylindricalPair(**parts, **static)
 
-    return each(one, arrays, angle.ndim)
+    return over_designs(one, arrays, angle.ndim)
 
 
 def _grown(pair: CylindricalPair, axes: int) -> Iterator[Grown]:
@@ -304,8 +314,8 @@ def _grown(pair: CylindricalPair, axes: int) -> Iterator[Grown]:
     least = np.asarray(pair.least_tip)[..., None] if pair.follows[1] else 0.0
     short = (least > 0.0) & (np.asarray(thickness) < least)
     flags = np.concatenate([undercut, short], axis=-1).reshape(-1, 4)
-    for (pinion_undercut, wheel_undercut, *shortened), which in alike(flags):
-        part, part_ratio = (rows((pair, ratio), which)) if axes else (pair, ratio)
+    for (pinion_undercut, wheel_undercut, *shortened), which in designs_by_flags(flags):
+        part, part_ratio = (select_designs((pair, ratio), which)) if axes else (pair, ratio)
         if pinion_undercut or wheel_undercut:
             cut = _replaced(part, axes, undercut=(pinion_undercut, wheel_undercut))
             part, part_ratio = _over(_with_crossings, cut, axes)
@@ -317,7 +327,7 @@ def _grown(pair: CylindricalPair, axes: int) -> Iterator[Grown]:
 
 def _replaced(pair: CylindricalPair, axes: int, **static: Any) -> CylindricalPair:
     replaced: Callable[[CylindricalPair], CylindricalPair] = partial(dataclasses.replace, **static)
-    return each(replaced, pair, axes)
+    return over_designs(replaced, pair, axes)
 
 
 def _plain(pair: CylindricalPair) -> CylindricalPair:
@@ -329,7 +339,9 @@ def _with_lanes(pair: CylindricalPair, ratio: Array | np.ndarray) -> Cylindrical
     """A batch with places for the pairs of its largest contact ratio."""
     ratios_in_reach = [value for value in np.asarray(ratio).tolist() if _in_reach(value)]
     return _replaced(
-        pair, 1, lanes=lanes_for(max(ratios_in_reach, default=1.0), helical=pair.helical)
+        pair,
+        1,
+        lanes=lanes_for_contact_ratio(max(ratios_in_reach, default=1.0), helical=pair.helical),
     )
 
 
@@ -342,7 +354,7 @@ def _over(compute: Callable[[CylindricalPair], Any], pair: CylindricalPair, axes
     if not axes:
         return compute(pair)
     count = len(pair.module)
-    return rows(compute(padded(pair, count)), slice(count))
+    return select_designs(compute(padded(pair, count)), slice(count))
 
 
 @program
@@ -360,7 +372,7 @@ def _complete(
             jnp.stack([gear.tip_thickness for gear in design.gears]) / design.module,
         )
 
-    return each(alone, pair, pair.module.ndim)
+    return over_designs(alone, pair, pair.module.ndim)
 
 
 @program
@@ -369,12 +381,12 @@ def _with_crossings(pair: CylindricalPair) -> tuple[CylindricalPair, Array]:
         design = _crossed(design)
         return design, design.contact_ratio
 
-    return each(alone, pair, pair.module.ndim)
+    return over_designs(alone, pair, pair.module.ndim)
 
 
 @program
 def _judged(pair: CylindricalPair) -> Status:
-    return each(lambda one: designed(one)[1], pair, pair.module.ndim)
+    return over_designs(lambda one: designed_pair(one)[1], pair, pair.module.ndim)
 
 
 def _crossed(pair: CylindricalPair) -> CylindricalPair:

@@ -56,7 +56,7 @@ def _cylindrical(gears: CylindricalGears, slices: int) -> Made:
 
 def _with_cures(error: InputError, gears: CylindricalGears) -> InputError:
     """A refusal with changes of the table after which it runs, behind the last of several sentences."""
-    from pitchpoint.gears.cylindrical.cures import cures, told_with_cures  # few gears are refused
+    from pitchpoint.gears.cylindrical.cures import cures, error_with_cures  # few gears are refused
 
     values = _given(gears)
     values["least_tip_thickness"] = values["least_tip"]
@@ -70,7 +70,7 @@ def _with_cures(error: InputError, gears: CylindricalGears) -> InputError:
     changes = cures(gears, remedies, values, _running)
     last_refusal = copy(every[-1])
     last_refusal.message, last_refusal.cures = (
-        told_with_cures(last_refusal.message, changes),
+        error_with_cures(last_refusal.message, changes),
         changes,
     )
     return last_refusal if len(every) == 1 else CollectedInputError([*every[:-1], last_refusal])

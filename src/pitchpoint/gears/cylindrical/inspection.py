@@ -86,7 +86,7 @@ class Toothing:
     def half_thickness_angle(self, radius: float) -> float:
         """Half the tooth's angle at a radius [m] on the involute [rad]."""
         flank = acos(abs(self.base_radius / radius))
-        thicker = involute(self.transverse_pressure_angle) - involute(flank)
+        thicker = scalar_involute(self.transverse_pressure_angle) - scalar_involute(flank)
         return self.normal_thickness / (self.module * abs(self.teeth)) + self.side * thicker
 
     def span(self, count: float) -> float:
@@ -95,7 +95,7 @@ class Toothing:
         Source: ISO 21771:2007, base tangent length
         W_k = m_n cos(alpha_n) (pi (k - 1/2) + z inv(alpha_t)) + 2 x m_n sin(alpha_n).
         """
-        teeth = pi * (count - 0.5) + self.teeth * involute(self.transverse_pressure_angle)
+        teeth = pi * (count - 0.5) + self.teeth * scalar_involute(self.transverse_pressure_angle)
         shift = 2.0 * self.profile_shift * self.module * sin(self.pressure_angle)
         return self.module * cos(self.pressure_angle) * teeth + shift
 
@@ -123,8 +123,8 @@ class Toothing:
         """
         space = pi - self.normal_thickness / self.module
         ball = diameter / (self.module * cos(self.pressure_angle))
-        return inverse_involute(
-            involute(self.transverse_pressure_angle) + (ball - space) / self.teeth
+        return scalar_inverse_involute(
+            scalar_involute(self.transverse_pressure_angle) + (ball - space) / self.teeth
         )
 
     def ball_roll(self, diameter: float) -> float:
@@ -157,7 +157,7 @@ class Toothing:
         """Diameter of a pin that touches spur teeth at a roll length [m]."""
         radius = abs(self.base_radius)
         space = (pi - self.normal_thickness / self.module) / abs(self.teeth)
-        angle = roll / radius + self.side * space - involute(self.pressure_angle)
+        angle = roll / radius + self.side * space - scalar_involute(self.pressure_angle)
         return 2.0 * self.side * (radius * tan(angle) - roll)
 
     def _ball_centre(self, diameter: float) -> float:
@@ -278,8 +278,8 @@ def distance_without_backlash(first: Toothing, second: Toothing) -> float:
         0.02
     """
     shifts = 2.0 * tan(first.pressure_angle) * (first.profile_shift + second.profile_shift)
-    value = involute(first.transverse_pressure_angle) + shifts / (first.teeth + second.teeth)
-    return abs(first.base_radius + second.base_radius) / cos(inverse_involute(value))
+    value = scalar_involute(first.transverse_pressure_angle) + shifts / (first.teeth + second.teeth)
+    return abs(first.base_radius + second.base_radius) / cos(scalar_inverse_involute(value))
 
 
 def profile_shift_sum(
@@ -319,10 +319,14 @@ def profile_shift_sum(
             key="centre_distance",
         )
     working = acos(least / centre_distance)
-    return (involute(working) - involute(transverse)) * total / (2.0 * tan(pressure_angle))
+    return (
+        (scalar_involute(working) - scalar_involute(transverse))
+        * total
+        / (2.0 * tan(pressure_angle))
+    )
 
 
-def involute(angle: float) -> float:
+def scalar_involute(angle: float) -> float:
     """Involute function inv(alpha) = tan(alpha) - alpha [rad].
 
     Source: ISO 21771:2007, involute function.
@@ -330,17 +334,17 @@ def involute(angle: float) -> float:
     return tan(angle) - angle
 
 
-def inverse_involute(value: float) -> float:
+def scalar_inverse_involute(value: float) -> float:
     """Angle whose involute function has a value [rad]; NaN where there is none below 86 degrees.
 
     Source: ISO 21771:2007, involute function, inverted by Newton's method.
     """
     largest_angle = 1.5
-    if not 0.0 < value <= involute(largest_angle):
+    if not 0.0 < value <= scalar_involute(largest_angle):
         return 0.0 if value == 0.0 else nan
     angle, before = min((3.0 * value) ** (1.0 / 3.0), largest_angle), inf
     while angle < before:  # Newton's steps from above only fall, as the curve bends upwards
-        before, angle = angle, angle - (involute(angle) - value) / tan(angle) ** 2
+        before, angle = angle, angle - (scalar_involute(angle) - value) / tan(angle) ** 2
     return before
 
 

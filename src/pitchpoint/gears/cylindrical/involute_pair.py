@@ -33,7 +33,7 @@ from pitchpoint.gears.involute import (
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
 from pitchpoint.gears.pairs import flanks_in_turn, planet_gears, spots_on_turning
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
-from pitchpoint.roots import hypot, root
+from pitchpoint.roots import find_root, hypot
 
 __all__ = ["InvolutePair", "LineOfAction", "zero_backlash_centre_distance"]
 
@@ -580,7 +580,7 @@ class InvolutePair(InvoluteMesh):
             return shorter.tip_thickness / gear.module - self.least_tip
 
         most = (jnp.abs(gear.tip_radius) - jnp.abs(gear.base_radius)) / gear.module
-        return root(missing, 0.2 * most, most)[0]
+        return find_root(missing, 0.2 * most, most)[0]
 
     def _gear(self, index: int) -> InvoluteGear:
         is_ring = self.internal and index == 1

@@ -12,7 +12,7 @@ from pitchpoint.gears.pairs import since_entry
 from pitchpoint.gears.rated_pair import (
     RatedPair,
     StandardPair,
-    bare,
+    bare_pair,
     ends_at_tips,
     rated_pair,
     standard_pair,
@@ -50,7 +50,7 @@ class CylindricalPair(InvolutePair):
         )
 
 
-@bare.register
+@bare_pair.register
 def _bare(pair: CylindricalPair) -> CylindricalPair:
     """Without what neither circles nor roots depend on; its path of contact ends at the tip circles."""
     return dataclasses.replace(

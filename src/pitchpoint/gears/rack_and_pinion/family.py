@@ -10,7 +10,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.bodies import MassInertia, disc
-from pitchpoint.gears.contact_lines import lanes_for
+from pitchpoint.gears.contact_lines import lanes_for_contact_ratio
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.involute import InvoluteGear, usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
@@ -34,7 +34,7 @@ def _build(gears: RackAndPinionGears, slices: int) -> tuple[Mesh, tuple[str, ...
         pinion = replace(mesh.pinion, undercut=True)
         mesh, _, ratio = _complete(replace(mesh, pinion=pinion))
     warnings = check_rack_and_pinion(mesh)
-    mesh = replace(mesh, lanes=lanes_for(float(ratio), helical=mesh.helical))
+    mesh = replace(mesh, lanes=lanes_for_contact_ratio(float(ratio), helical=mesh.helical))
     return _bored(mesh, gears.bore_diameter), tuple(warnings)
 
 

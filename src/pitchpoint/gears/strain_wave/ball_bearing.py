@@ -22,8 +22,8 @@ __all__ = [
     "ThinRaceBearing",
     "ball_bearing",
     "ball_circle",
+    "ball_stiffness_palmgren_1959",
     "on_balls",
-    "palmgren_1959",
     "parts_on_balls",
 ]
 
@@ -73,7 +73,8 @@ class ThinRaceBearing(eqx.Module):
         play: see `Balls` [m].
         bending, stretching: of the outer race, E/(1 - nu^2) I and E A [N m2, N].
 
-    Source: Palmgren (1959) for the balls, see `palmgren_1959`; the race bends like a wide strip.
+    Source: Palmgren (1959) for the balls, see `ball_stiffness_palmgren_1959`; the race bends like
+    a wide strip.
     """
 
     angle: Float[Array, " ball"]
@@ -106,7 +107,7 @@ class ThinRaceBearing(eqx.Module):
         return jnp.where(square == 0.0, stretch, of_waves)
 
 
-def palmgren_1959(diameter: float) -> float:
+def ball_stiffness_palmgren_1959(diameter: float) -> float:
     """Stiffness of a steel ball between two grooved steel races, force over approach^1.5 [N/m1.5].
 
     Args:
@@ -115,7 +116,7 @@ def palmgren_1959(diameter: float) -> float:
     Source: Palmgren (1959): the races approach by 4.36e-4 mm (Q/N)^(2/3) (D/mm)^(-1/3).
 
     Example:
-        >>> stiffness = palmgren_1959(6.35e-3)
+        >>> stiffness = ball_stiffness_palmgren_1959(6.35e-3)
         >>> round(1e6 * (65.0 / stiffness) ** (2 / 3), 2)
         3.81
     """
@@ -158,7 +159,7 @@ def ball_bearing(balls: Balls, diameter: float, bore: float, width: float) -> Th
     young, poisson = STEEL["young"], STEEL["poisson"]
     return ThinRaceBearing(
         angle=array(2.0 * pi * np.arange(number) / number),
-        stiffness=array(palmgren_1959(ball)),
+        stiffness=array(ball_stiffness_palmgren_1959(ball)),
         play=array(balls.play),
         bending=array(young / (1.0 - poisson**2) * width * race**3 / 12.0),
         stretching=array(young * width * race),

@@ -3,10 +3,10 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.gears.strain_wave.flexspline_tooth import unit
+from pitchpoint.gears.strain_wave.flexspline_tooth import unit_circle_place
 from pitchpoint.gears.strain_wave.groove import Groove
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
-from pitchpoint.roots import root
+from pitchpoint.roots import find_root
 
 __all__ = ["FLATTENED", "LEVELS", "curvature_in_contact"]
 
@@ -68,7 +68,7 @@ def _reach(
 ) -> Sides:
     """Way along the flank to its root and its tip on which the gap grows so far [m]."""
     flank, (foot, axis) = motion.flank, motion.foot(angle)
-    turned, upright = unit(axis), jnp.cos(axis - flank.angle(along))
+    turned, upright = unit_circle_place(axis), jnp.cos(axis - flank.angle(along))
     side = jnp.asarray([-1.0, 1.0]).reshape(2, *(1,) * grown.ndim)
 
     def play(reach: Array) -> Array:
@@ -82,5 +82,5 @@ def _reach(
         return _ROUGH * (upright * (play(reach) - least) / grown - 1.0)
 
     most = jnp.stack([jnp.minimum(widest, end) for end in (along, flank.length - along)])
-    reaches, _ = root(missing, most / 4.0, jax.lax.stop_gradient(most))
+    reaches, _ = find_root(missing, most / 4.0, jax.lax.stop_gradient(most))
     return jnp.clip(reaches, 0.0, most)

@@ -16,7 +16,7 @@ from pitchpoint.doubts import Doubt, fails, in_percent
 from pitchpoint.errors import InputError
 from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
-from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for, survey
+from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for_pairs, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.flexspline_tooth import (
     DoubleArcFlank,
@@ -28,7 +28,7 @@ from pitchpoint.gears.strain_wave.groove import (
     NODES,
     Groove,
     SplineTips,
-    given,
+    involute_groove,
     swept,
     tip_with_land,
 )
@@ -47,7 +47,7 @@ __all__ = [
     "build_strain_waves",
     "check_rim",
     "check_strain_wave",
-    "designed",
+    "designed_strain_wave",
     "double_arc_flank",
 ]
 
@@ -153,7 +153,7 @@ def build_strain_wave(
         InputError: dimensions that give no drive; the key is the name of the argument.
     """
     built = _built(_planned(**locals()), _ALONE)
-    return built(lanes_for(built.held))
+    return built(lanes_for_pairs(built.held))
 
 
 def build_strain_waves(**values: Any) -> Designs[StrainWave]:
@@ -199,7 +199,7 @@ def build_strain_waves(**values: Any) -> Designs[StrainWave]:
     return Designs(groups, status, check_strain_wave, refused)
 
 
-def designed(drive: StrainWave) -> tuple[StrainWave, Status]:
+def designed_strain_wave(drive: StrainWave) -> tuple[StrainWave, Status]:
     """The drive with all that follows from its dimensions, and whether it can run.
 
     A pure function that can be traced, vectorised and differentiated: `jax.vmap` makes it that of a batch.
@@ -481,7 +481,7 @@ def _plain(at: _Contact) -> _Contact:
 
 def _group(found: dict[int, _Built], numbers: list[int]) -> Group[StrainWave]:
     """Drives of one structure, with places for the pairs of the widest zone."""
-    lanes = lanes_for(max(found[number].held for number in numbers))
+    lanes = lanes_for_pairs(max(found[number].held for number in numbers))
     drives = [found[number](lanes) for number in numbers]
     return Group(jax.tree.map(lambda *leaves: np.stack(leaves), *drives), np.array(numbers))
 
@@ -871,7 +871,7 @@ def _tip_height(motion: ToothMotion, angle: Float[Array, ""]) -> Float[Array, ""
     return jnp.real(motion.place(motion.flank.length, angle))
 
 
-_given_groove = program(given)
+_given_groove = program(involute_groove)
 _lands = program(Groove.land)
 
 

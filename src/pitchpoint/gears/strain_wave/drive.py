@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int, Shaped
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.contacts import Contacts, Shape, along
+from pitchpoint.contact.contacts import Contacts, Shape, contact_velocity
 from pitchpoint.contact.surface import Spot, Surfaces, other_side
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions
@@ -22,27 +22,27 @@ from pitchpoint.gears.pairs import (
     of_pairs,
     on_edge,
     touching,
-    way,
+    way_of_pairs,
 )
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.ball_bearing import ThinRaceBearing
 from pitchpoint.gears.strain_wave.body import StrainWaveBody, end_of_wave, left_behind
 from pitchpoint.gears.strain_wave.contact_width import curvature_in_contact
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
-from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit
+from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit_circle_place
 from pitchpoint.gears.strain_wave.groove import Groove, SplineTips, swept
 from pitchpoint.gears.strain_wave.in_series import InSeries
 from pitchpoint.gears.strain_wave.tooth_motion import PassingPoint, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes, tooth_sections
-from pitchpoint.roots import hypot, root
+from pitchpoint.roots import find_root, hypot
 
 __all__ = [
     "WINDOW",
     "StrainWave",
     "Survey",
     "Touching",
-    "lanes_for",
+    "lanes_for_pairs",
     "nearest_points",
     "places",
     "survey",
@@ -153,7 +153,7 @@ class StrainWave(Mesh):
         edges_carry: True if the rounding of the flexspline's tips may carry; static.
         conjugate: True if the groove follows from the flexspline and its motion; static.
         odd: True if the flexspline has an odd number of teeth: zones are half a pitch apart; static.
-        lanes: places for pairs in each of both zones, see `lanes_for`; those beyond `held` stay empty;
+        lanes: places for pairs in each of both zones, see `lanes_for_pairs`; those beyond `held` stay empty;
             static.
         surfaces: how the flanks of flexspline and circular spline differ from their design.
     """
@@ -297,7 +297,7 @@ class StrainWave(Mesh):
         # state no energy goes into the travelling pattern of strains, so that part does no work.
         motion = self._passing_over
         inner = motion - jnp.mean(motion)
-        elastic = along(raw.normal, motion) / (inner @ inner)
+        elastic = contact_velocity(raw.normal, motion) / (inner @ inner)
         return dataclasses.replace(
             raw, normal=raw.normal - jnp.stack([elastic * rate for rate in inner])
         )
@@ -328,13 +328,13 @@ class StrainWave(Mesh):
         roll = (at.turning - touching.mate * at.sliding) / sum_curvature
         roll = jnp.where(touching.held, 0.0, roll)
         velocity = jnp.stack([-at.shift, at.shift + at.whole, -at.whole])
-        local = unit(-at.direction) * velocity
+        local = unit_circle_place(-at.direction) * velocity
         flank_speed = jnp.stack([roll, -roll, none])
         mate = sum_curvature - at.curvature
         flat = self.module, largest_radius(self)
         # The space that a tooth meets lies at its angle around the circular spline.
         zone = _as_lanes(self._zone, jnp.asarray(phase))
-        turned = unit(tooth_angles * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
+        turned = unit_circle_place(tooth_angles * self.teeth[0] / self.teeth[1] + jnp.pi * zone)
         return Contacts(
             active=active,
             path=tooth_angles / (2.0 * jnp.pi),
@@ -346,8 +346,8 @@ class StrainWave(Mesh):
             gap=jnp.maximum(touching.clearance, 0.0) + play,
             flank=jnp.stack([touching.along, self.groove.depth(jnp.real(at.place))]),
             point=_vector(turned * at.place),
-            direction=_vector(1j * turned * unit(at.direction)),
-            tangent=_vector(turned * unit(at.direction)),
+            direction=_vector(1j * turned * unit_circle_place(at.direction)),
+            tangent=_vector(turned * unit_circle_place(at.direction)),
             felt=curvature_in_contact(motion, self.groove, touching.along, angle, *flat),
             shape="line",
         )
@@ -441,7 +441,7 @@ def seconds_for(lanes: int) -> int:
     return 1 + lanes // 9
 
 
-def lanes_for(held: int) -> int:
+def lanes_for_pairs(held: int) -> int:
     """Places for so many pairs in a zone: one of a few sizes."""
     several = -(-held // PLACES[0]) * PLACES[0]
     return next((size for size in PLACES if held <= size), several)
@@ -468,7 +468,7 @@ def survey(
     angle = jnp.asarray(_ALONG)
     touching = nearest_points(motion, groove, angle, backlash, edges_carry=edges_carry)
     overlaps = _overlaps(motion, groove, angle, edges_carry)
-    upright = jnp.abs(jnp.imag(unit(-touching.at.direction) * touching.at.whole))
+    upright = jnp.abs(jnp.imag(unit_circle_place(-touching.at.direction) * touching.at.whole))
     part = upright / jnp.abs(touching.at.whole)
     reaches = overlaps & (part > 0.0)
     # Safe in the branch that is not taken too: its derivative would be NaN, which no `where` takes away.
@@ -545,7 +545,7 @@ def nearest_points(
     last_station, end = stations.shape[0] - 1, jax.lax.stop_gradient(stations[-1])
     # The bounds move with the flank, and so does a point that is held at one.
     foot, axis = motion.foot(angle)
-    turned = unit(axis)
+    turned = unit_circle_place(axis)
     before, after = (stations[k] for k in (jnp.maximum(nearest - 1, 0), nearest))
     # What lies below the tip of the mate meets nothing.
     below, above = (jnp.real(foot + turned * flank.place(along)) for along in (before, after))
@@ -578,7 +578,7 @@ def nearest_points(
         return jnp.where(bounded, (beyond - ends) / most, growth(beyond))
 
     guess = jnp.where(bounded, ends, most / 2.0)
-    beyond, _ = root(widening, guess, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
+    beyond, _ = find_root(widening, guess, jax.lax.stop_gradient(most) * (1.0 + _SLACK))
     nearest_along = begin + jnp.clip(beyond, 0.0, most)
     at = motion.at(nearest_along, angle)
     width, _ = groove.width_and_slope(jnp.real(at.place))
@@ -707,7 +707,7 @@ def _drawing(drive: StrainWave) -> dict[str, Float[Array, "..."]]:
     tooth = drive._outline
     angle = jnp.deg2rad(jnp.linspace(-90.0, 90.0, 37))
     foot, axis = drive.tooth_motion.foot(angle)
-    placed = foot[:, None] + unit(axis[:, None]) * tooth
+    placed = foot[:, None] + unit_circle_place(axis[:, None]) * tooth
     width, heights = drive.groove.half_width + drive.backlash / 2.0, drive.groove.made
     space = jnp.concatenate([heights - 1j * width, (heights + 1j * width)[::-1]])
     return {
@@ -773,6 +773,6 @@ def _tooth_sections(drive: StrainWave) -> tuple[ToothSection, ToothSection]:
 
 completed.register(StrainWave, StrainWave.completed)
 independent.register(StrainWave, lambda _: ("face_width",))
-way.register(StrainWave, lambda _: WAVE)
+way_of_pairs.register(StrainWave, lambda _: WAVE)
 touching.register(StrainWave, lambda _: False)  # most teeth of a zone have a clearance
 flanks_in_turn.register(StrainWave, lambda drive: drive.teeth)

@@ -7,7 +7,7 @@ from typing import Any
 
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import MassInertia, as_one, disc
+from pitchpoint.gears.bodies import MassInertia, combined_inertia, disc
 from pitchpoint.gears.family import Family, Followed, Records, Solids, Turning, waves
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
@@ -18,7 +18,7 @@ from pitchpoint.gears.strain_wave.design import (
     check_strain_wave,
 )
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.in_series import Behind, dimensions
+from pitchpoint.gears.strain_wave.in_series import Behind, part_dimensions
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
 from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.table import (
@@ -162,7 +162,7 @@ def _of_parts(gears: StrainWaveGears, drive: StrainWave) -> dict[str, Followed]:
         sizes = _balls(bearing).sizes(diameter)
         size_by_key |= {f"wave_generator.bearing.{key}": value for key, value in sizes.items()}
     if behind is not None:
-        sizes = dimensions(_behind(behind), diameter, float(drive.rim.thickness))
+        sizes = part_dimensions(_behind(behind), diameter, float(drive.rim.thickness))
         size_by_key |= {f"yielding.{key}": value for key, value in sizes.items()}
     return {
         key: Followed(value, "assumed", _rule(key, value / diameter))
@@ -205,7 +205,7 @@ def _bodies(
     outer, inner = sizes["outside_diameter"] / 2.0, gears.module * gears.teeth[1] / 2.0
     spline = disc(density=spline_density, width=width, outer=outer, inner=inner)
     wave = _wave_generator(gears, within, sizes["shaft_diameter"] / 2.0, flexspline_density)
-    return [wave, as_one(flexspline), spline], assumption
+    return [wave, combined_inertia(flexspline), spline], assumption
 
 
 def _sizes(gears: StrainWaveGears, thickness: float) -> dict[str, float]:
@@ -213,7 +213,7 @@ def _sizes(gears: StrainWaveGears, thickness: float) -> dict[str, float]:
     pitch = gears.module * gears.teeth[0]
     sizes = PROPORTIONS.behind(pitch) | {"bottom_thickness": thickness}
     if gears.yielding is not None:
-        sizes |= dimensions(_behind(gears.yielding), pitch, thickness)
+        sizes |= part_dimensions(_behind(gears.yielding), pitch, thickness)
     return sizes
 
 

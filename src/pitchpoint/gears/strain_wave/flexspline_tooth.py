@@ -14,7 +14,7 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.gears.involute import involute
 
-__all__ = ["ArcChain", "DoubleArcFlank", "FlexsplineFlank", "InvoluteFlank", "unit"]
+__all__ = ["ArcChain", "DoubleArcFlank", "FlexsplineFlank", "InvoluteFlank", "unit_circle_place"]
 
 Along = Float[Arrays, "*#b"]
 Place = Complex[Array, "*#b"]
@@ -23,7 +23,7 @@ STEEPEST = 1.4
 """Flank angle at which the rounding of the tip ends [rad]: what lies beyond meets no flank."""
 
 
-def unit(angle: Along) -> Place:
+def unit_circle_place(angle: Along) -> Place:
     """Place on the unit circle at an angle [rad]: exp(i angle) without the exponential of nothing."""
     place: Place = _on_circle(jnp.asarray(angle))
     return place
@@ -194,7 +194,7 @@ class ArcChain(FlexsplineFlank):
 def _chord(angle: Along, curvature: Along, way: Along) -> Place:
     """From the beginning of an arc with a flank angle there to a point on it."""
     half = curvature * way / 2.0
-    return way * jnp.sinc(half / jnp.pi) * unit(-(angle + half))
+    return way * jnp.sinc(half / jnp.pi) * unit_circle_place(-(angle + half))
 
 
 class DoubleArcFlank(FlexsplineFlank):
@@ -294,7 +294,7 @@ class DoubleArcFlank(FlexsplineFlank):
 
     def prepared(self) -> ArcChain:
         """The arcs and the tangent as a chain."""
-        root = self.concave_centre - self.concave_radius * 1j * unit(-self.root_angle)
+        root = self.concave_centre - self.concave_radius * 1j * unit_circle_place(-self.root_angle)
         convex = 1.0 / self.convex_radius
         bends = [-1.0 / self.concave_radius, jnp.zeros_like(convex), convex, convex + self._bent]
         bends.append(1.0 / self.tip_rounding)
@@ -405,7 +405,7 @@ class InvoluteFlank(FlexsplineFlank):
     def _on_involute(self, along: Along) -> tuple[Place, Along]:
         """Place and flank angle at an arc length on the involute; beyond it those of its end."""
         roll = self._roll(along)
-        turned = unit(self._half_angle - roll)
+        turned = unit_circle_place(self._half_angle - roll)
         place = self.base_radius * turned * (1.0 + 1j * roll) - self.neutral_radius
         return place, roll - self._half_angle
 

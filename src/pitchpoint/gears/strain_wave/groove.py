@@ -11,7 +11,15 @@ from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.roots import hypot
 
-__all__ = ["NEWTON_STEPS", "NODES", "Groove", "SplineTips", "given", "swept", "tip_with_land"]
+__all__ = [
+    "NEWTON_STEPS",
+    "NODES",
+    "Groove",
+    "SplineTips",
+    "involute_groove",
+    "swept",
+    "tip_with_land",
+]
 
 NODES = 640
 """Heights at which the flank is known; cubic between them."""
@@ -162,7 +170,7 @@ def _heights(low: Float[Array, ""], high: Float[Array, ""]) -> Float[Array, " no
     return jnp.stack([high, low - high]) @ _FROM_TOP
 
 
-def given(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -> Groove:
+def involute_groove(flank: InvoluteFlank, low: Float[Array, ""], high: Float[Array, ""]) -> Groove:
     """Groove of an involute circular spline: the space has the shape of an external tooth.
 
     Args:

@@ -20,9 +20,9 @@ __all__ = [
     "Cup",
     "InSeries",
     "bolts_in_shear",
-    "dimensions",
     "disc_in_torsion",
     "in_series",
+    "part_dimensions",
     "shaft_in_torsion",
 ]
 
@@ -186,7 +186,7 @@ def in_series(behind: Behind, cup: Cup) -> InSeries:
     """
     stiffnesses = (getattr(behind, f"{part}_stiffness") for part in DIMENSIONS)
     modelled = {part: _modelled(behind, part) for part in DIMENSIONS}
-    sizes = dimensions(behind, cup.diameter, cup.rim)
+    sizes = part_dimensions(behind, cup.diameter, cup.rim)
     values = [0.0 if stiffness is None else 1.0 / stiffness for stiffness in stiffnesses]
     if modelled["flange"]:
         values[1] = 1.0 / _joint(sizes, cup)
@@ -199,7 +199,7 @@ def in_series(behind: Behind, cup: Cup) -> InSeries:
     )
 
 
-def dimensions(behind: Behind, diameter: float, rim: float) -> dict[str, float]:
+def part_dimensions(behind: Behind, diameter: float, rim: float) -> dict[str, float]:
     """Dimensions of the parts that a model describes, as given or usual, by name [m]; of bolts their number.
 
     Args:

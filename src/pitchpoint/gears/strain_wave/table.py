@@ -22,7 +22,7 @@ from pitchpoint.gears.table import (
     check_waves,
 )
 from pitchpoint.input.quantities import Pair, Quantity, named
-from pitchpoint.input.tables import Table, by
+from pitchpoint.input.tables import Table, table_by_key
 
 __all__ = ["DoubleArcTooth", "InvoluteGroove", "InvoluteTooth", "LoadLimits", "StrainWaveGears"]
 
@@ -328,11 +328,11 @@ class SplineDeviations(Table):
 
 Tooth = Annotated[
     Annotated[DoubleArcTooth, Tag("double arc")] | Annotated[InvoluteTooth, Tag("involute")],
-    Field(discriminator=by("form", DoubleArcTooth, InvoluteTooth)),
+    Field(discriminator=table_by_key("form", DoubleArcTooth, InvoluteTooth)),
 ]
 CircularSpline = Annotated[
     Annotated[ConjugateGroove, Tag("conjugate")] | Annotated[InvoluteGroove, Tag("involute")],
-    Field(discriminator=by("form", ConjugateGroove, InvoluteGroove)),
+    Field(discriminator=table_by_key("form", ConjugateGroove, InvoluteGroove)),
 ]
 
 

@@ -5,7 +5,7 @@ from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit
+from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit_circle_place
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 
 __all__ = ["PassingPoint", "ToothMotion"]
@@ -40,7 +40,7 @@ class PassingPoint(eqx.Module):
     @property
     def _velocity(self) -> Place:
         """Velocity along the tangent (real part) and the normal (imaginary part)."""
-        return unit(-self.direction) * self.velocity
+        return unit_circle_place(-self.direction) * self.velocity
 
     @property
     def closing(self) -> Each:
@@ -55,7 +55,10 @@ class PassingPoint(eqx.Module):
     @property
     def change(self) -> Each:
         """Derivative of `closing` with respect to the phase."""
-        return jnp.imag(unit(-self.direction) * self.acceleration) - self.turning * self.sliding
+        return (
+            jnp.imag(unit_circle_place(-self.direction) * self.acceleration)
+            - self.turning * self.sliding
+        )
 
     @property
     def approach(self) -> Each:
@@ -102,7 +105,7 @@ class ToothMotion(eqx.Module):
         line = self.line
         polar = self.lag * angle + line.tangential(angle) / line.radius
         reach = line.radius + line.radial(angle)
-        return reach * unit(polar), polar + line.rotation(angle)
+        return reach * unit_circle_place(polar), polar + line.rotation(angle)
 
     def place(self, along: Each, angle: Each) -> Place:
         """Where a point of the flank is [m]."""
@@ -111,7 +114,7 @@ class ToothMotion(eqx.Module):
     def carried(self, of_tooth: Place, angle: Each) -> Place:
         """Where a point is that is given from the foot of the tooth [m]."""
         foot, axis = self.foot(angle)
-        return foot + unit(axis) * of_tooth
+        return foot + unit_circle_place(axis) * of_tooth
 
     def passed(
         self, stations: Float[Array, " station"], angle: Float[Array, "*b"]
@@ -145,7 +148,7 @@ class ToothMotion(eqx.Module):
         rise, rise_2 = line.radial(angle, 1), line.radial(angle, 2)
         foot, axis = self.foot(angle)
         outwards = foot / reach
-        arm = unit(axis) * flank.place(along)
+        arm = unit_circle_place(axis) * flank.place(along)
         polar, turning = self.lag + turn, self.lag + turn + tilt
         place = foot + arm
         bend = rise_2 + 2j * rise * polar + 1j * reach * turn_2 - reach * polar**2

@@ -5,9 +5,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Numbers
-from pitchpoint.roots import root
+from pitchpoint.roots import find_root
 
-__all__ = ["TorusFace", "least"]
+__all__ = ["TorusFace", "nearest_across_face"]
 
 _FARTHEST = 0.9
 """Part of the smaller radius beyond which no place is looked for: no face is that wide."""
@@ -62,7 +62,7 @@ class TorusFace(eqx.Module):
 
 
 @eqx.filter_jit
-def least(
+def nearest_across_face(
     first: TorusFace,
     second: TorusFace,
     *,
@@ -88,5 +88,5 @@ def least(
         at = way - farthest
         return first.slope(at) + second.slope(at - axial_offset) + inclination
 
-    at = root(parting, farthest, 2.0 * farthest)[0] - farthest
+    at = find_root(parting, farthest, 2.0 * farthest)[0] - farthest
     return at, first.missing(at) + second.missing(at - axial_offset) + inclination * at

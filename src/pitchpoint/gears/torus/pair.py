@@ -12,7 +12,7 @@ from pitchpoint.gears.bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
 from pitchpoint.gears.pairs import largest_inclination, since_entry
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
-from pitchpoint.gears.torus.face import TorusFace, least
+from pitchpoint.gears.torus.face import TorusFace, nearest_across_face
 
 __all__ = ["TorusPair"]
 
@@ -138,7 +138,9 @@ class TorusPair(InvolutePair):
         )
 
     def _least(self, inclination: Float[Array, ""]) -> tuple[Float[Array, ""], Float[Array, ""]]:
-        return least(*self.faces, axial_offset=self.axial_offset, inclination=inclination)
+        return nearest_across_face(
+            *self.faces, axial_offset=self.axial_offset, inclination=inclination
+        )
 
 
 @main_dimensions.register

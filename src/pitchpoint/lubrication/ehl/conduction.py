@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.flash_temperature import Conductor
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 
 __all__ = [
     "Conduction",
@@ -37,4 +37,4 @@ class Conduction(eqx.Module):
     oil_conductivity: Float[Arrays, "..."]
 
     def __init__(self, *, a: Conductor, b: Conductor, oil_conductivity: ArrayLike) -> None:
-        self.a, self.b, self.oil_conductivity = a, b, as_array(oil_conductivity)
+        self.a, self.b, self.oil_conductivity = a, b, float64_array(oil_conductivity)

@@ -32,15 +32,15 @@ __all__ = [
     "UNKNOWN_GRID",
     "UNSOLVED",
     "SolvedLines",
-    "check",
+    "check_line_contact",
     "extrapolated",
     "flooded_inlet",
+    "line_film_warnings",
     "of_conduction",
     "of_grid",
     "of_heat",
     "of_volume",
     "starved",
-    "warnings",
 ]
 
 LARGE: Final = 100.0
@@ -89,7 +89,7 @@ UNSOLVED: Final = "unsolved"
 """Kind of the sentence on contacts that have no film."""
 
 
-def check(contact: LineContact) -> None:
+def check_line_contact(contact: LineContact) -> None:
     """InputError for values that no contact has."""
     fluid, texture = contact.fluid, contact.texture
     positive = {
@@ -167,7 +167,7 @@ OF_LINE_INPUTS = Checks[SolvedLines]("lines, with a film or without")
 OF_LINE_FILMS = Checks[SolvedLines]("films of lines")
 
 
-def warnings(lines: SolvedLines) -> list[Doubt]:
+def line_film_warnings(lines: SolvedLines) -> list[Doubt]:
     """What to be wary of about films."""
     told, solved = OF_LINE_INPUTS.of(lines), lines.code == Code.SOLVED
     if not solved.any():

@@ -9,10 +9,10 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import LineGrid, lowest
-from pitchpoint.lubrication.ehl.heat import Temperatures, temperatures
+from pitchpoint.lubrication.ehl.grid import LineGrid, parabola_minimum
+from pitchpoint.lubrication.ehl.heat import Temperatures, line_temperatures
 from pitchpoint.lubrication.ehl.line import NEAR, LineContact, LineProblem
-from pitchpoint.lubrication.ehl.work import filled, shear_stress, work_of_pressure
+from pitchpoint.lubrication.ehl.work import fractional_film_content, shear_stress, work_of_pressure
 
 __all__ = ["LineFilm", "line_film"]
 
@@ -128,7 +128,7 @@ def line_film(
     oil = pressure - asperities
     room = flow.room(gap)
     sliding = contact.speed_b - contact.speed_a
-    full = filled(flow, oil, room)
+    full = fractional_film_content(flow, oil, room)
     stress = full * shear_stress(flow, oil, room, sliding)
     carried = jnp.sum(at.widths * asperities) / problem.load
     place, least = _minimum(at.x, gap, jnp.abs(at.x) < NEAR / problem.yielding)
@@ -162,14 +162,14 @@ def line_film(
         pumping_power=pumping * flow.pressure * flow.height * problem.speed,
         half_width=contact.half_width,
         hertz_pressure=flow.pressure,
-        heat=temperatures(contact, problem, pressure, level, at),
+        heat=line_temperatures(contact, problem, pressure, level, at),
     )
     return _turned(film, contact.entrainment < 0.0)
 
 
 def _minimum(x: Arrays, film: Array, where: Bool[Array, " node"]) -> tuple[Array, Array]:
     """Place and value of the lowest point about the lowest node."""
-    return lowest(x, film, jnp.argmin(jnp.where(where, film, jnp.inf)))
+    return parabola_minimum(x, film, jnp.argmin(jnp.where(where, film, jnp.inf)))
 
 
 def _spike(x: Arrays, pressure: Array) -> tuple[Array, Array]:
@@ -179,7 +179,7 @@ def _spike(x: Arrays, pressure: Array) -> tuple[Array, Array]:
     peak = jnp.max(jnp.where((here > before) & (here >= after) & (x[1:-1] > 0.0), inner, 0))
     valley = jnp.max(jnp.where((here < before) & (here < after) & (inner < peak), inner, 0))
     stands_out = pressure[peak] - pressure[valley] > STANDS_OUT * jnp.max(pressure)
-    place, deepest = lowest(x, -pressure, peak)
+    place, deepest = parabola_minimum(x, -pressure, peak)
     exists = (valley > 0) & stands_out
     return jnp.where(exists, place, jnp.nan), jnp.where(exists, -deepest, jnp.nan)
 

@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.registry import (
     MOST_PATCH_NODES,
     SMOOTH,
     THERMAL,
-    fewer,
+    coarser_count,
 )
 from pitchpoint.materials.registry import DENSITY as LAWS_OF_DENSITY
 from pitchpoint.materials.registry import SHEAR_STRESS, USUAL_SHEAR_STRESS, USUAL_VISCOSITY
@@ -53,7 +53,7 @@ def _asperities() -> list[str]:
 
 
 def _nodes(value: float) -> float:
-    fewer(int(value))
+    coarser_count(int(value))
     return value
 
 

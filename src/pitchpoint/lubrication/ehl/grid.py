@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
 from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.registry import FEWEST, fewer
+from pitchpoint.lubrication.ehl.registry import FEWEST, coarser_count
 
 __all__ = [
     "ENDS",
@@ -21,7 +21,7 @@ __all__ = [
     "NodeRow",
     "grid",
     "line_kernel",
-    "lowest",
+    "parabola_minimum",
     "prolongation",
     "restricted",
 ]
@@ -106,7 +106,7 @@ def grid(nodes: int, ends: Ends = "entrained") -> LineGrid:
         >>> float(at.x[0]), float(at.x[at.middle]), float(at.x[-1])
         (-16.0, 0.0, 1.5)
     """
-    fewer(nodes)
+    coarser_count(nodes)
     inlet, outlet = ENDS[ends]
     places = _places(inlet, outlet)
     steps = np.linspace(0.0, 1.0, nodes)
@@ -134,7 +134,7 @@ def line_kernel(x: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[n
     return np.diff(integral, axis=1) / np.pi
 
 
-def lowest(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
+def parabola_minimum(x: Arrays, values: Array, node: Array) -> tuple[Array, Array]:
     """Place and value of the lowest point of the parabola through a lowest node and its neighbours.
 
     From Newton's divided differences.

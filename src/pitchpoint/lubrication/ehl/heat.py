@@ -12,27 +12,35 @@ from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.grid import LineGrid
 from pitchpoint.lubrication.ehl.line import LineContact, LineProblem
-from pitchpoint.lubrication.ehl.newton import ENOUGH, LineIterate, iterated, residual
+from pitchpoint.lubrication.ehl.newton import ENOUGH, LineIterate, newton_on_line, residual
 from pitchpoint.lubrication.ehl.strips import (
     MOST_TURNS,
     NEAR,
     STEADY,
     Past,
     Strip,
-    accelerated,
-    balanced,
+    anderson_rise,
     by_heat,
     change_of,
     cold_past,
+    line_temperature_rise,
     of_surfaces,
-    passing,
     spread_of,
-    warmer,
+    surface_passages,
+    warmer_flow,
 )
 from pitchpoint.lubrication.ehl.work import work_of_expansion
 from pitchpoint.lubrication.flash_temperature import peclet_number
 
-__all__ = ["Temperatures", "Warm", "defect", "settled", "temperatures", "turned", "warmed"]
+__all__ = [
+    "Temperatures",
+    "Warm",
+    "alternating_solution",
+    "line_heat_defect",
+    "line_temperatures",
+    "polished_warm_line",
+    "warmed_line",
+]
 
 Nodes = Float[Arrays, "*b node"]
 Each = Float[Arrays, "*b"]
@@ -94,7 +102,7 @@ def _strip(
     gap = problem.gap(pressure, level, at)
     asperities, room = flow.asperity_pressure(gap), flow.room(gap)
     length = contact.half_width / problem.yielding
-    speeds, passes = _forward(contact), passing(at.x, at.edges)
+    speeds, passes = _forward(contact), surface_passages(at.x, at.edges)
     spread = spread_of(_conduction(contact), speeds, length, room * flow.height, passes)
     none, sliding = jnp.zeros(()), contact.speed_b - contact.speed_a
     fields = pressure - asperities, gap, room, asperities, none, sliding
@@ -106,9 +114,11 @@ def _power(problem: LineProblem) -> Array:
     return problem.flow.pressure * problem.flow.height * problem.speed
 
 
-def warmed(problem: LineProblem, rise: Array) -> LineProblem:
+def warmed_line(problem: LineProblem, rise: Array) -> LineProblem:
     """The contact with a film that is so much warmer than its inlet, shape (node,) [K]."""
-    warm: LineProblem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
+    warm: LineProblem = eqx.tree_at(
+        lambda tree: tree.flow, problem, warmer_flow(problem.flow, rise)
+    )
     return warm
 
 
@@ -131,17 +141,19 @@ class Warm(NamedTuple):
     past: Past
 
 
-def turned(contact: LineContact, problem: LineProblem, state: LineIterate, at: LineGrid) -> Warm:
+def alternating_solution(
+    contact: LineContact, problem: LineProblem, state: LineIterate, at: LineGrid
+) -> Warm:
     """Pressure and temperature in turns, from the isothermal solution or any other pressure."""
 
     def onward(warm: Warm) -> Warm:
-        so_warm = warmed(problem, warm.rise)
-        state = iterated(so_warm, warm.state.pressure, warm.state.level, at)
+        so_warm = warmed_line(problem, warm.rise)
+        state = newton_on_line(so_warm, warm.state.pressure, warm.state.level, at)
         strip = _strip(contact, so_warm, state.pressure, state.level, at)
-        rise = balanced(so_warm.flow, strip, at)
+        rise = line_temperature_rise(so_warm.flow, strip, at)
         change = change_of(warm.rise, rise)
         near = (change < NEAR) & (warm.change < NEAR)
-        quicker, past = accelerated(warm.past, warm.rise, rise, near)
+        quicker, past = anderson_rise(warm.past, warm.rise, rise, near)
         rise = jnp.where(near & (change > STEADY), quicker, rise)
         return Warm(state, rise, change, warm.turns + 1, warm.total + state.total, past)
 
@@ -157,7 +169,7 @@ def turned(contact: LineContact, problem: LineProblem, state: LineIterate, at: L
     return end
 
 
-def settled(
+def polished_warm_line(
     contact: LineContact, problem: LineProblem, warm: Warm, at: LineGrid
 ) -> tuple[LineProblem, Array, Array]:
     """Contact as warm as it is, pressure and level, with their derivatives to all that it is made of.
@@ -177,11 +189,11 @@ def settled(
 
     def parts(solution: Array) -> tuple[LineProblem, Array, Array]:
         inner, level, rise = solution[: nodes - 2], solution[nodes - 2], solution[nodes - 1 :]
-        return warmed(problem, rise), jnp.pad(inner, 1), level
+        return warmed_line(problem, rise), jnp.pad(inner, 1), level
 
     def left(contact: LineContact, problem: LineProblem, solution: Array) -> Array:
         _, pressure, level = parts(solution)
-        so_warm = warmed(problem, solution[nodes - 1 :])
+        so_warm = warmed_line(problem, solution[nodes - 1 :])
         rise, heated, *_ = _balance(contact, so_warm, pressure, level, at)
         return jnp.append(residual(so_warm, pressure, level, at), rise - heated)
 
@@ -192,7 +204,7 @@ def settled(
     return parts(solution - jnp.linalg.solve(matrix, left(contact, problem, solution)))
 
 
-def defect(
+def line_heat_defect(
     contact: LineContact, problem: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Array:
     """Rise of the film against that by its heat, over the largest rise."""
@@ -208,7 +220,7 @@ def _balance(
     return problem.flow.temperature_rise, *by_heat(problem.flow, strip, at), strip
 
 
-def temperatures(
+def line_temperatures(
     contact: LineContact, problem: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Temperatures | None:
     """Heat and temperatures of one contact along its grid; None of an isothermal one."""

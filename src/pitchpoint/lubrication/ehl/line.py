@@ -12,12 +12,12 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import LineGrid, lowest, restricted
+from pitchpoint.lubrication.ehl.grid import LineGrid, parabola_minimum, restricted
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture
 from pitchpoint.lubrication.film_thickness import moes_1992
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.fluid import Fluid
 
 __all__ = ["SLOWEST", "LineContact", "LineProblem", "length_of", "problem_of"]
@@ -87,10 +87,10 @@ class LineContact(eqx.Module):
         conduction: Conduction | None = None,
         heights: tuple[HeightMap, ...] = (),
     ) -> None:
-        self.line_load, self.radius = as_array(line_load), as_array(radius)
-        self.modulus = as_array(modulus)
-        self.speed_a, self.speed_b = as_array(speed_a), as_array(speed_b)
-        self.approach, self.inlet = as_array(approach), as_array(inlet)
+        self.line_load, self.radius = float64_array(line_load), float64_array(radius)
+        self.modulus = float64_array(modulus)
+        self.speed_a, self.speed_b = float64_array(speed_a), float64_array(speed_b)
+        self.approach, self.inlet = float64_array(approach), float64_array(inlet)
         self.fluid, self.texture, self.conduction = fluid, texture, conduction
         self.heights = heights
 
@@ -142,7 +142,7 @@ class LineProblem(eqx.Module):
     def films(self, pressure: Array, level: Array, at: LineGrid) -> Array:
         """Gap of the mean planes at the middle node, the smallest and the mean one, shape (3,)."""
         gap = self.gap(pressure, level, at)
-        _, least = lowest(at.x, gap, self._narrowest(gap, at))
+        _, least = parabola_minimum(at.x, gap, self._narrowest(gap, at))
         return jnp.stack([gap[at.middle], least, self.mean_film(pressure, level, at)])
 
     def opening(self, gap: Array, at: LineGrid) -> Array:

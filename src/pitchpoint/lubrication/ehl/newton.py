@@ -20,7 +20,7 @@ __all__ = [
     "TOLERANCE",
     "LineIterate",
     "from_coarse",
-    "polished",
+    "polished_line",
     "residual",
     "solved_films",
     "step",
@@ -161,7 +161,9 @@ def dry(problem: LineProblem, at: LineGrid, factor: Array | float = 1.0) -> tupl
     return problem.carrying(jnp.sqrt(inside), THICK * problem.film * factor**0.7, at)
 
 
-def iterated(problem: LineProblem, pressure: Array, level: Array, at: LineGrid) -> LineIterate:
+def newton_on_line(
+    problem: LineProblem, pressure: Array, level: Array, at: LineGrid
+) -> LineIterate:
     """Newton's iteration on one grid, from a guess; from thick films where that fails."""
     faster = jnp.asarray(FASTER)
     last_speed = len(FASTER) - 1
@@ -213,13 +215,13 @@ def from_coarse(problem: LineProblem, grids: Sequence[LineGrid]) -> LineIterate:
         problem: the contact.
         grids: from coarse to fine.
     """
-    state = iterated(problem, *dry(problem, grids[0]), grids[0])
+    state = newton_on_line(problem, *dry(problem, grids[0]), grids[0])
     total = state.total
     for before, at in pairwise(grids):
         finer = prolongation(before.x.shape[0], at.x.shape[0])
         pressure = jnp.maximum(finer @ state.pressure, 0.0).at[jnp.array([0, -1])].set(0.0)
         coarse = jnp.stack((solved_films(problem, state, before), state.coarse[0]))
-        state = iterated(problem, pressure, state.level, at)._replace(coarse=coarse)
+        state = newton_on_line(problem, pressure, state.level, at)._replace(coarse=coarse)
         total = total + state.total
     return state._replace(total=total)
 
@@ -230,7 +232,7 @@ def solved_films(problem: LineProblem, state: LineIterate, at: LineGrid) -> Arra
     return jnp.where(state.residual < ENOUGH, films, jnp.nan)
 
 
-def polished(
+def polished_line(
     problem: LineProblem, state: LineIterate, at: LineGrid, pushed: Array | None = None
 ) -> tuple[Array, Array, Array]:
     """Pressure and level of a solution, with their derivatives to all that the problem is made of.

@@ -25,7 +25,7 @@ __all__ = [
     "USUAL_ASPERITIES",
     "AsperityLaw",
     "ThermalEffect",
-    "fewer",
+    "coarser_count",
 ]
 
 COARSE: Final = 0.03
@@ -121,7 +121,7 @@ FEWEST: Final = 33
 """Nodes of the coarsest grid."""
 
 
-def fewer(nodes: int) -> int | None:
+def coarser_count(nodes: int) -> int | None:
     """Nodes of the next coarser grid, None for the coarsest.
 
     Raises:

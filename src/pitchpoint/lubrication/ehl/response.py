@@ -10,14 +10,16 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.ehl.grid import LineGrid
-from pitchpoint.lubrication.ehl.heat import warmed
+from pitchpoint.lubrication.ehl.heat import warmed_line
 from pitchpoint.lubrication.ehl.line import LineContact, LineProblem, problem_of
 from pitchpoint.lubrication.ehl.newton import residual, step
 
-__all__ = ["answer", "pushed", "pushed_rest", "stiffness_and_damping"]
+__all__ = ["load_and_approach_change", "pushed_rest", "solution_response", "stiffness_and_damping"]
 
 
-def pushed(contact: LineContact, problem: LineProblem, at: LineGrid) -> LineProblem:
+def load_and_approach_change(
+    contact: LineContact, problem: LineProblem, at: LineGrid
+) -> LineProblem:
     """Changes of a problem with the load of its contact, as a part of it, and with the approach [s/m].
 
     They are the last axis of every number. The film stays as warm as it is.
@@ -34,7 +36,7 @@ def pushed(contact: LineContact, problem: LineProblem, at: LineGrid) -> LineProb
         changed_contact = eqx.tree_at(
             lambda tree: (tree.line_load, tree.approach), contact, load_and_approach
         )
-        return warmed(problem_of(changed_contact, at), problem.flow.temperature_rise)
+        return warmed_line(problem_of(changed_contact, at), problem.flow.temperature_rise)
 
     push: LineProblem = jax.jacfwd(changed)(jnp.zeros(2))
     return push
@@ -64,7 +66,7 @@ def pushed_rest(
     return _both(lambda tree: residual(tree, pressure, level, at), (problem,), (push,))
 
 
-def answer(
+def solution_response(
     problem: LineProblem, push: LineProblem, pressure: Array, level: Array, at: LineGrid
 ) -> Float[Array, "rest 2"]:
     """Changes of pressures and level of a solution, by the implicit function theorem, see `pushed_rest`.
@@ -93,7 +95,7 @@ def stiffness_and_damping(
         push: its changes.
         pressure: of the nodes, shape (node,).
         level: of the surfaces.
-        answers: their changes, see `answer`.
+        answers: their changes, see `solution_response`.
         at: the grid.
 
     Returns:

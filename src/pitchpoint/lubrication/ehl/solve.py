@@ -15,10 +15,15 @@ from numpy.typing import NDArray
 from pitchpoint._jax import jax, jnp
 from pitchpoint.doubts import Doubt
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.doubts import SolvedLines, check, warnings
+from pitchpoint.lubrication.ehl.doubts import SolvedLines, check_line_contact, line_film_warnings
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
 from pitchpoint.lubrication.ehl.grid import ENDS, Ends, LineGrid, grid, prolongation
-from pitchpoint.lubrication.ehl.heat import defect, settled, turned, warmed
+from pitchpoint.lubrication.ehl.heat import (
+    alternating_solution,
+    line_heat_defect,
+    polished_warm_line,
+    warmed_line,
+)
 from pitchpoint.lubrication.ehl.line import (
     LEAST,
     LineContact,
@@ -29,18 +34,18 @@ from pitchpoint.lubrication.ehl.newton import (
     ENOUGH,
     LineIterate,
     from_coarse,
-    iterated,
-    polished,
+    newton_on_line,
+    polished_line,
     residual,
     solved_films,
 )
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.profiles import check_profiles
-from pitchpoint.lubrication.ehl.registry import fewer
+from pitchpoint.lubrication.ehl.registry import coarser_count
 from pitchpoint.lubrication.ehl.response import (
-    answer,
-    pushed,
+    load_and_approach_change,
     pushed_rest,
+    solution_response,
     stiffness_and_damping,
 )
 from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
@@ -164,9 +169,11 @@ def line_films(contact: LineContact, nodes: int = NODES, ends: Ends = "entrained
     def one(alone: LineContact) -> LineFilm:
         single = replace(alone, heights=heights)
         problem, pressure, level, solved = _followed(single, grids)
-        push = pushed(single, problem, grids[-1])
+        push = load_and_approach_change(single, problem, grids[-1])
         solution = problem, push, pressure, level
-        response = stiffness_and_damping(single, *solution, answer(*solution, grids[-1]), grids[-1])
+        response = stiffness_and_damping(
+            single, *solution, solution_response(*solution, grids[-1]), grids[-1]
+        )
         film = line_film(single, problem, pressure, level, response, grids[-1])
         if single.texture is None:
             solved = solved & ~_torn(film.gap / problem.flow.height, problem)
@@ -185,11 +192,11 @@ def _followed(
     frozen, still = jax.lax.stop_gradient((problem, contact))
     state = from_coarse(frozen, grids)
     if contact.conduction is None:
-        pressure, level, _ = polished(problem, state, at)
+        pressure, level, _ = polished_line(problem, state, at)
         return problem, pressure, level, state.residual < ENOUGH
-    warm = turned(still, frozen, state, at)
-    so_warm, pressure, level = settled(contact, problem, warm, at)
-    off = defect(contact, so_warm, pressure, level, at)
+    warm = alternating_solution(still, frozen, state, at)
+    so_warm, pressure, level = polished_warm_line(contact, problem, warm, at)
+    off = line_heat_defect(contact, so_warm, pressure, level, at)
     converged = (warm.state.residual < ENOUGH) & (off < WARM_ENOUGH)
     return so_warm, pressure, level, converged
 
@@ -220,7 +227,7 @@ def solve_lines(
             nodes.
     """
     shape, flat = _flat(replace(contact, heights=()))
-    check(flat)
+    check_line_contact(flat)
     check_profiles(contact, nodes)
     begin = None if start is None else _begin(start, flat.line_load.shape[0], nodes)
     closes = np.asarray(flat.approach) != 0.0
@@ -238,7 +245,7 @@ def solve_lines(
     back = np.argsort(np.concatenate(groups))
     film, ended, domain = jax.tree.map(lambda *parts: np.concatenate(parts)[back], *portions)
     grid_error = np.stack([ended.grid, ended.grid_minimum])
-    doubts = tuple(warnings(SolvedLines(flat, film, ended.code, grid_error, nodes, size)))
+    doubts = tuple(line_film_warnings(SolvedLines(flat, film, ended.code, grid_error, nodes, size)))
     film, ended = (
         jax.tree.map(lambda leaf: leaf.reshape((*shape, *leaf.shape[1:])), tree)
         for tree in (film, ended)
@@ -268,7 +275,7 @@ def usual_nodes(load: float, light: int = NODES) -> int:
 def _ladder(nodes: int, ends: Ends) -> tuple[LineGrid, ...]:
     """Grids from the coarsest to that of so many nodes."""
     numbers = [nodes]
-    while (less := fewer(numbers[0])) is not None:
+    while (less := coarser_count(numbers[0])) is not None:
         numbers.insert(0, less)
     return tuple(grid(number, ends) for number in numbers)
 
@@ -359,9 +366,9 @@ def _solved(
 ) -> tuple[LineFilm, Ended, Array]:
     at = grids[-1]
     problem, state, turns = _iterated(contact, begin, grids)
-    push = pushed(contact, problem, at)
+    push = load_and_approach_change(contact, problem, at)
     others = pushed_rest(problem, push, state.pressure, state.level, at)
-    pressure, level, answers = polished(problem, state, at, others)
+    pressure, level, answers = polished_line(problem, state, at, others)
     response = stiffness_and_damping(contact, problem, push, pressure, level, answers, at)
     film = line_film(contact, problem, pressure, level, response, at)
     residuals = residual(problem, pressure, level, at)
@@ -370,7 +377,7 @@ def _solved(
     code = jnp.where(converged, Code.SOLVED, Code.NOT_CONVERGED)
     if contact.texture is None:
         code = jnp.where(converged & _torn(gap, problem), Code.UNRESOLVED, code)
-    off_heat = None if turns is None else defect(contact, problem, pressure, level, at)
+    off_heat = None if turns is None else line_heat_defect(contact, problem, pressure, level, at)
     if off_heat is not None:
         code = jnp.where(off_heat < WARM_ENOUGH, code, Code.NOT_CONVERGED)
     solved = code == Code.SOLVED
@@ -404,13 +411,13 @@ def _iterated(
         state = _onward(problem, begin[0], begin[1] / problem.flow.height, grids)
     if contact.conduction is None:
         return problem, state, None
-    warm = turned(contact, problem, state, at)
+    warm = alternating_solution(contact, problem, state, at)
     cold, hot = (
         problem.films(solution.pressure, solution.level, at) for solution in (state, warm.state)
     )
     # The grid changes the warm film by as much as the isothermal one.
     warm_state = warm.state._replace(total=warm.total, coarse=state.coarse + (hot - cold))
-    return warmed(problem, warm.rise), warm_state, warm.turns
+    return warmed_line(problem, warm.rise), warm_state, warm.turns
 
 
 def _onward(
@@ -418,10 +425,10 @@ def _onward(
 ) -> LineIterate:
     """Solution from a pressure that is near it; those on the two grids before tell the error by the grid."""
     at = grids[-1]
-    state = iterated(problem, *problem.carrying(shape, gap, at), at)
+    state = newton_on_line(problem, *problem.carrying(shape, gap, at), at)
     films, total, coarse = state.coarse, state.total, state
     for k, before in enumerate(grids[-2:-4:-1]):
-        coarse = iterated(problem, coarse.pressure[::2], coarse.level, before)
+        coarse = newton_on_line(problem, coarse.pressure[::2], coarse.level, before)
         films = films.at[k].set(solved_films(problem, coarse, before))
         total = total + coarse.total
     return state._replace(coarse=films, total=total)

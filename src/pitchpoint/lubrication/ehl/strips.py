@@ -14,7 +14,7 @@ from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.grid import Along
 from pitchpoint.lubrication.ehl.line import SLOWEST
 from pitchpoint.lubrication.ehl.reynolds import Flow
-from pitchpoint.lubrication.ehl.work import filled, pressure_flow, shear_stress
+from pitchpoint.lubrication.ehl.work import fractional_film_content, pressure_flow, shear_stress
 from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip
 
 __all__ = [
@@ -29,15 +29,15 @@ __all__ = [
     "Spread",
     "Strip",
     "Surfaces",
-    "accelerated",
-    "balanced",
+    "anderson_rise",
     "by_heat",
     "change_of",
     "cold_past",
+    "line_temperature_rise",
     "of_surfaces",
-    "passing",
     "spread_of",
-    "warmer",
+    "surface_passages",
+    "warmer_flow",
 ]
 
 WARM_ENOUGH: Final = 1e-6
@@ -124,7 +124,7 @@ class PassingSurfaces(NamedTuple):
     against: Float[Array, "node node"]
 
 
-def passing(x: Float[Arrays, " node"], edges: Float[Arrays, " edge"]) -> PassingSurfaces:
+def surface_passages(x: Float[Arrays, " node"], edges: Float[Arrays, " edge"]) -> PassingSurfaces:
     """Surfaces that pass cells with such edges, in units of length."""
     against = moving_strip(-x[::-1], -edges[::-1])
     return PassingSurfaces(moving_strip(x, edges), against[::-1, ::-1])
@@ -186,7 +186,7 @@ class Strip(NamedTuple):
     spread: Spread
 
 
-def warmer(flow: Flow, rise: Array) -> Flow:
+def warmer_flow(flow: Flow, rise: Array) -> Flow:
     """The flow of a film that is so much warmer than its inlet [K]."""
     warm: Flow = eqx.tree_at(lambda tree: tree.temperature_rise, flow, rise)
     return warm
@@ -196,7 +196,7 @@ def _made(flow: Flow, strip: Strip, moved: Array, at: Along) -> tuple[Array, Arr
     """Heat per area that the film makes at each node, and the asperities, where mass is moved as given."""
     sliding = strip.sliding
     stress = shear_stress(flow, strip.oil, strip.room, sliding)
-    shear = filled(flow, strip.oil, strip.room) * stress * sliding
+    shear = fractional_film_content(flow, strip.oil, strip.room) * stress * sliding
     # Half of what a face makes belongs to each of the nodes beside it.
     pumping = 0.5 * moved**2 * pressure_flow(flow, strip.oil, strip.gap, at)[1]
     pumping = jnp.append(pumping, 0.0) + jnp.append(0.0, pumping)
@@ -205,7 +205,7 @@ def _made(flow: Flow, strip: Strip, moved: Array, at: Along) -> tuple[Array, Arr
     return shear + pumped + strip.beside, rubbed * jnp.abs(sliding)
 
 
-def balanced(flow: Flow, strip: Strip, at: Along) -> Array:
+def line_temperature_rise(flow: Flow, strip: Strip, at: Along) -> Array:
     """Rise of the film at a pressure, by Newton's method from that of the flow, shape (node,) [K].
 
     The mass that pressure moves is held instead of the slope of the pressure: the heat of a flow that is held
@@ -216,7 +216,7 @@ def balanced(flow: Flow, strip: Strip, at: Along) -> Array:
     total = mean + jnp.diag(strip.spread.within)
 
     def made(rise: Array) -> tuple[Array, tuple[Array, Array]]:
-        film, rubbed = _made(warmer(flow, rise), strip, moved, at)
+        film, rubbed = _made(warmer_flow(flow, rise), strip, moved, at)
         return film, (film, rubbed)
 
     def onward(iterate: tuple[Array, Array, Array]) -> tuple[Array, Array, Array]:
@@ -271,7 +271,7 @@ class Past(NamedTuple):
         all_found: differences between turns, shape (REMEMBERED, node) [K].
         all_moved: of the same turns.
 
-    Source: Anderson (1965), see `accelerated`.
+    Source: Anderson (1965), see `anderson_rise`.
     """
 
     found: Float[Array, " node"]
@@ -291,7 +291,7 @@ def change_of(begun: Array, found: Array) -> Array:
     return jnp.max(jnp.abs(found - begun)) / (jnp.max(found) + LEAST_RISE)
 
 
-def accelerated(past: Past, begun: Array, found: Array, known: Array) -> tuple[Array, Past]:
+def anderson_rise(past: Past, begun: Array, found: Array, known: Array) -> tuple[Array, Past]:
     """Rise from which the next turn begins: where turns of the past together would have moved least.
 
     Source: Anderson (1965), with differences between turns as unknowns.

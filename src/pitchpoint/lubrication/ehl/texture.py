@@ -19,7 +19,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.lubrication.ehl.registry import ASPERITIES, USUAL_ASPERITIES
 from pitchpoint.lubrication.flow_factors import mean_gap, patir_cheng_1978
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 
 __all__ = ["Rough", "Smooth", "Texture"]
 
@@ -166,10 +166,10 @@ class Rough(Texture):
         pattern: float = 1.0,
         boundary_friction: ArrayLike = BOUNDARY_FRICTION,
     ) -> None:
-        self.deviation, self.modulus = as_array(rq), as_array(modulus)
-        self.eta_beta_sigma = as_array(eta_beta_sigma)
-        self.sigma_over_beta = as_array(sigma_over_beta)
-        self.friction = as_array(boundary_friction)
+        self.deviation, self.modulus = float64_array(rq), float64_array(modulus)
+        self.eta_beta_sigma = float64_array(eta_beta_sigma)
+        self.sigma_over_beta = float64_array(sigma_over_beta)
+        self.friction = float64_array(boundary_friction)
         self.asperities, self.pattern = ASPERITIES[asperities].name, float(pattern)
         if not PATTERNS[0] <= self.pattern <= PATTERNS[1]:
             raise InputError(

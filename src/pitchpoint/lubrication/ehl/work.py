@@ -12,7 +12,7 @@ from pitchpoint.lubrication.ehl.grid import Along, LineGrid
 from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
 
 __all__ = [
-    "filled",
+    "fractional_film_content",
     "pressure_flow",
     "shear_stress",
     "specific_volume",
@@ -93,7 +93,7 @@ def _between(values: Array, at: float) -> Array:
     return 0.5 * (before + behind) + 0.5 * at * (behind - before)
 
 
-def filled(flow: Flow, oil: Array, room: Array) -> Array:
+def fractional_film_content(flow: Flow, oil: Array, room: Array) -> Array:
     """Oil that passes the end of the film over what would fill the gap behind it, one in the film.
 
     From the mass that the surfaces carry on behind the end of the film.

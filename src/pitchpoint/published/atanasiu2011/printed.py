@@ -11,7 +11,7 @@ from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
-from pitchpoint.gears.rated_pair import bare
+from pitchpoint.gears.rated_pair import bare_pair
 from pitchpoint.programs import program
 from pitchpoint.published.publication import ReadingPoint
 
@@ -61,7 +61,7 @@ def readings(point: ReadingPoint) -> dict[str, float]:
     assert isinstance(mesh, CylindricalPair)
     angle = float(np.arctan(tan(gears.pressure_angle) / cos(gears.helix_angle)))
     densities = [float(solid.density) for solid in design.solids]
-    inertia, action = jax.device_get(_inertia_and_arms(bare(mesh), array(densities)))
+    inertia, action = jax.device_get(_inertia_and_arms(bare_pair(mesh), array(densities)))
     return {
         "printed_undercut_limit_1": undercut_limit(
             teeth=gears.teeth[0],

@@ -15,7 +15,7 @@ from pitchpoint.published.liu_xiong_torus.motion import (
     pairs,
 )
 
-__all__ = ["CYCLE_COURSES", "TorusOil", "cycle_places", "figures"]
+__all__ = ["CYCLE_COURSES", "TorusOil", "cycle_places", "motion_figures"]
 
 BINS = 2**14
 """Instants of equal distance of which the spectrum is taken."""
@@ -61,7 +61,9 @@ def cycle_places() -> Float[Array, " place"]:
 
 
 @program
-def figures(drive: TorusDrive, moved: TorusCourse, oil: TorusOil) -> dict[str, Float[Array, "..."]]:
+def motion_figures(
+    drive: TorusDrive, moved: TorusCourse, oil: TorusOil
+) -> dict[str, Float[Array, "..."]]:
     """Numbers and courses of a motion by the end of their names.
 
     Where flanks would pull, a pair has neither friction nor rolling, and no film to be counted.

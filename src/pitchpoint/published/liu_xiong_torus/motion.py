@@ -13,7 +13,15 @@ from pitchpoint.contact.hertz import line_pressure
 from pitchpoint.lubrication.friction_coefficient import xu_2007
 from pitchpoint.programs import fast_program
 
-__all__ = ["Pairs", "Piece", "TorusCourse", "TorusDrive", "course", "friction_forces", "pairs"]
+__all__ = [
+    "Pairs",
+    "Piece",
+    "TorusCourse",
+    "TorusDrive",
+    "friction_forces",
+    "pairs",
+    "torus_motion",
+]
 
 UNIT = 1e-6
 """Length in which places and speeds are integrated [m, m/s]."""
@@ -235,7 +243,7 @@ class Piece(eqx.Module):
 
 
 @fast_program
-def course(drive: TorusDrive, pieces: Piece) -> TorusCourse:
+def torus_motion(drive: TorusDrive, pieces: Piece) -> TorusCourse:
     """Motion from rest under the full torques.
 
     Args:

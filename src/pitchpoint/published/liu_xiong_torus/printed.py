@@ -30,16 +30,16 @@ from pitchpoint.published.liu_xiong_torus.figures import (
     LINES,
     TorusOil,
     cycle_places,
-    figures,
+    motion_figures,
 )
-from pitchpoint.published.liu_xiong_torus.motion import Piece, TorusDrive, course
+from pitchpoint.published.liu_xiong_torus.motion import Piece, TorusDrive, torus_motion
 from pitchpoint.published.liu_xiong_torus.publication import PAIRS
 from pitchpoint.published.liu_xiong_torus.steady import TorusSprings
-from pitchpoint.published.liu_xiong_torus.stiffness import library_stiffness, straight
+from pitchpoint.published.liu_xiong_torus.stiffness import library_stiffness, linear_interpolation
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
 from pitchpoint.published.publication import Read, ReadingPoint
 
-__all__ = ["pair_stiffness", "pieces", "readings"]
+__all__ = ["hand_over_pieces", "pair_stiffness", "readings"]
 
 Values = NDArray[np.float64]
 Numbers = Sequence[float] | Values
@@ -80,7 +80,7 @@ def pair_stiffness(*, roll: Numbers, stiffness: Numbers) -> Values:
     return np.asarray(coefficients)
 
 
-def pieces(*, single: float, pitch: float, cycles: float) -> Piece:
+def hand_over_pieces(*, single: float, pitch: float, cycles: float) -> Piece:
     """What lies between neighbouring hand-overs from the start on.
 
     Args:
@@ -223,7 +223,7 @@ def _literal(point: ReadingPoint, mesh: TorusPair) -> Read:
     }
     drives = {name: _drive(name, point, conditions) for name in PAIRS}
     for name, drive in drives.items():
-        pair_figures = jax.device_get(figures(drive, course(drive, turn), oil))
+        pair_figures = jax.device_get(motion_figures(drive, torus_motion(drive, turn), oil))
         _check_found(name, pair_figures)
         reading |= _named(name, pair_figures)
     power = float(point.operation.speed) * float(drives["torus"].input_torque)
@@ -246,7 +246,7 @@ def _stiffness(point: ReadingPoint, conditions: Known, drives: Mapping[str, Toru
         library = library_stiffness(*_teeth(name, point), float(point.operation.load), path)
         curve = [0.0, *np.asarray(drives[name].coefficients)]
         by_source = {
-            "given": straight(roll, rolls, springs),
+            "given": linear_interpolation(roll, rolls, springs),
             "motion": np.polynomial.polynomial.polyval(roll, curve),
             **library,
         }
@@ -357,7 +357,7 @@ def _pieces(line: Known, formulas: TorusFormulas) -> Piece:
             f"{single + 1.0:.4g}",
             key="formulas",
         )
-    return pieces(single=single, pitch=pitch % 1.0, cycles=formulas.mesh_cycles)
+    return hand_over_pieces(single=single, pitch=pitch % 1.0, cycles=formulas.mesh_cycles)
 
 
 @program

@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
 from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-from pitchpoint.dynamics.bodies import Body, across
+from pitchpoint.dynamics.bodies import Body, radial_bearings
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import modes
@@ -115,7 +115,7 @@ def _bodies(operation: Operation, springs: TorusSprings) -> tuple[Body, Body]:
     stiffness = float(springs.bearing)
     damping = 2.0 * springs.bearing_damping * np.sqrt(springs.bearing * springs.mass)
     pinion_support, gear_support = (
-        across(mass, stiffness, brake)
+        radial_bearings(mass, stiffness, brake)
         for mass, brake in zip(springs.mass.tolist(), damping.tolist(), strict=True)
     )
     pinion, gear = springs.inertia

@@ -12,7 +12,7 @@ from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
 from pitchpoint.programs import program
 
-__all__ = ["library_stiffness", "straight"]
+__all__ = ["library_stiffness", "linear_interpolation"]
 
 Values = NDArray[np.float64]
 
@@ -71,6 +71,6 @@ def _of_pairs(
     return secant, secant / (1.0 - change / jnp.where(secant > 0.0, secant, 1.0))
 
 
-def straight(roll: Values, places: Values, values: Values) -> Values:
+def linear_interpolation(roll: Values, places: Values, values: Values) -> Values:
     """Values of a table, straight between its places and unknown beyond them."""
     return np.asarray(np.interp(roll, places, values, left=np.nan, right=np.nan))

@@ -25,8 +25,8 @@ __all__ = [
     "printed_viscosity",
     "relative_radius",
     "roelands_exponents",
-    "tooth_forces",
     "viscosity",
+    "zone_tooth_forces",
 ]
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ def largest_force(
     return torque / (base_radius * zones * float(np.sum(_cosines(teeth, count))))
 
 
-def tooth_forces(*, largest: float, teeth: float, count: int) -> Array:
+def zone_tooth_forces(*, largest: float, teeth: float, count: int) -> Array:
     """Forces of all teeth of one zone by eq. 5, shape (tooth) [N].
 
     Args:

@@ -14,8 +14,8 @@ from pitchpoint.published.xu2021.printed import (
     oil_of,
     printed_count,
     printed_viscosity,
-    tooth_forces,
     viscosity,
+    zone_tooth_forces,
 )
 from pitchpoint.published.xu2021.zone import MeshingZone, zone_of
 
@@ -67,8 +67,8 @@ def _loads(zone: MeshingZone) -> Read:
     """Eqs. 4 to 6, and Figure 6: teeth from that on the long axis on, as printed and closed."""
     teeth = zone.teeth[1]
     too_many, loaded = printed_count(teeth=teeth), loaded_count(teeth=teeth)
-    printed = tooth_forces(largest=zone.printed_load, teeth=teeth, count=too_many)
-    closed = tooth_forces(largest=zone.closed_load, teeth=teeth, count=loaded)
+    printed = zone_tooth_forces(largest=zone.printed_load, teeth=teeth, count=too_many)
+    closed = zone_tooth_forces(largest=zone.closed_load, teeth=teeth, count=loaded)
     return {
         "printed_largest_tooth_force": zone.printed_load,
         "printed_least_tooth_force": float(printed.min()),

@@ -18,11 +18,11 @@ __all__ = [
     "arc_distance",
     "closure_residual",
     "deflection_offset",
+    "half_zone_forces",
     "largest_tangential_load",
     "printed_tooth_forces",
     "readings",
     "recovered_torque",
-    "tooth_forces",
 ]
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ def largest_tangential_load(
     return pi * torque / (2.0 * half_zone * diameter**2 * face_width)
 
 
-def tooth_forces(
+def half_zone_forces(
     *, load: float, half_zone: float, step: float, diameter: float, face_width: float
 ) -> Array:
     """Tangential force of each tooth of one half zone, eq. 19 with 1/(2 phi_2) in the cosine [N].
@@ -146,7 +146,7 @@ def readings(point: ReadingPoint) -> dict[str, float]:
     zone = {"half_zone": HALF_ZONE, "diameter": diameter, "face_width": gears.face_width}
     load = largest_tangential_load(torque=torque, **zone)
     step = 2.0 * pi / gears.teeth[0]
-    closed = tooth_forces(load=load, step=step, **zone)
+    closed = half_zone_forces(load=load, step=step, **zone)
     printed = printed_tooth_forces(load=load, step=step, **zone)
     return {
         "largest_tangential_load": load,

@@ -32,7 +32,7 @@ from pitchpoint.published.zhao2022.printed import (
 from pitchpoint.published.zhao2022.table import FlankWear
 from pitchpoint.status import Code
 
-__all__ = ["LATER", "March", "Strips", "march", "marched", "readings", "severe"]
+__all__ = ["LATER", "March", "Strips", "march", "march_cycles", "march_to_severe_wear", "readings"]
 
 Array = NDArray[np.float64]
 
@@ -156,12 +156,12 @@ def march(
     return March(cycles, *fields)
 
 
-def marched(strips: Strips, *, rate: float, cycles: float) -> March:
+def march_cycles(strips: Strips, *, rate: float, cycles: float) -> March:
     """March over a number of cycles in `BLOCKS` blocks."""
     return march(strips, rate=rate, block=cycles / BLOCKS, blocks=BLOCKS)
 
 
-def severe(strips: Strips, *, rate: float, limit: float) -> March:
+def march_to_severe_wear(strips: Strips, *, rate: float, limit: float) -> March:
     """March until the deepest point passes a limit [m], where the stage of severe wear begins."""
     _, pressure, step = strips.worn(np.zeros_like(strips.angle))
     fastest = float(np.max(rate * pressure * step))
@@ -293,10 +293,10 @@ def readings(point: ReadingPoint) -> Read:
     )
     rate = mixed.coefficient / table.hardness
     reading: dict[str, Any] = {"wear_rate": rate}
-    wear = marched(strips, rate=rate, cycles=table.cycles)
+    wear = march_cycles(strips, rate=rate, cycles=table.cycles)
     reading |= _depths(wear, strips, rate, table)
     finer = strips_of(point, mesh.flank, neutral, finer=2)
-    twice = marched(finer, rate=rate, cycles=table.cycles).at(table.cycles, "depth")
+    twice = march_cycles(finer, rate=rate, cycles=table.cycles).at(table.cycles, "depth")
     reading["wear_depth_change"] = float(np.max(twice)) - reading["wear_depth"]
     reading |= _stages(strips, rate, _limit(strips, table, gears.module))
     reading |= _flank_courses(strips, rate, neutral)
@@ -317,7 +317,7 @@ def _limit(strips: Strips, table: FlankWear, module: float) -> float:
 def _depths(with_offset: March, strips: Strips, rate: float, table: FlankWear) -> dict[str, Any]:
     """Depth with and without the offset over the cycles."""
     cycles = np.linspace(0.0, table.cycles, BLOCKS + 1)
-    both = with_offset, marched(strips.without_offset(), rate=rate, cycles=table.cycles)
+    both = with_offset, march_cycles(strips.without_offset(), rate=rate, cycles=table.cycles)
     course = [_over(cycles, wear.cycles, wear.depth.max(axis=1)) for wear in both]
     return {
         "wear_depth": float(course[0][-1]),
@@ -340,7 +340,7 @@ def _over(places: Array, nodes: Array, values: Array) -> Array:
 
 def _stages(strips: Strips, rate: float, limit: float) -> dict[str, Any]:
     """Tip of the flank until wear is severe."""
-    wear = severe(strips, rate=rate, limit=limit)
+    wear = march_to_severe_wear(strips, rate=rate, limit=limit)
     end = wear.cycles_to(limit)
     cycles = np.linspace(0.0, wear.cycles[-1] if np.isnan(end) else end, BLOCKS + 1)
     return {
@@ -365,7 +365,7 @@ def _dry(
     """
     deeper, rate = mixed.dry / mixed.reference, mixed.reference / table.hardness
     late, all_cycles = (
-        deeper * marched(strips, rate=rate, cycles=cycles).at(cycles, "depth")
+        deeper * march_cycles(strips, rate=rate, cycles=cycles).at(cycles, "depth")
         for cycles in (LATER["late"], table.cycles)
     )
     depth = float(np.max(all_cycles))
@@ -392,7 +392,7 @@ def _flank_courses(strips: Strips, rate: float, neutral: float) -> dict[str, Any
         "radial_load": _spread(strips.load * np.tan(strips.angle)),
     }
     for name, cycles in {"new": 0.0, **LATER}.items():
-        wear = marched(strips, rate=rate, cycles=cycles)
+        wear = march_cycles(strips, rate=rate, cycles=cycles)
         held = wear.cycles[-1] >= cycles * (1.0 - 1e-12)
         depth, pressure, step = (
             field[-1] if held else np.full(count, np.nan)
@@ -434,13 +434,13 @@ def _beside_involute(
     flank = counterpart(mesh.flank, gears)
     involute = strips_of(point, flank, float(flank.neutral_radius))
     limit = _limit(involute, table, gears.module)
-    until_severe = severe(involute, rate=rate, limit=limit)
-    theirs = marched(involute, rate=rate, cycles=table.cycles)
+    until_severe = march_to_severe_wear(involute, rate=rate, limit=limit)
+    theirs = march_cycles(involute, rate=rate, cycles=table.cycles)
     ratios = {
         name: float(np.max(ours.at(table.cycles, name) / theirs.at(table.cycles, name)))
         for name in ("pressure", "step", "depth")
     }
-    late = marched(involute, rate=rate, cycles=LATER["late"]).at(LATER["late"], "depth")
+    late = march_cycles(involute, rate=rate, cycles=LATER["late"]).at(LATER["late"], "depth")
     return {
         "onset_over_involute": reading["severe_wear_cycles"] / until_severe.cycles_to(limit),
         **{f"{name}_over_involute": ratio for name, ratio in ratios.items()},

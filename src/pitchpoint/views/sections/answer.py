@@ -11,12 +11,12 @@ import xarray as xr
 from pitchpoint.analyses.figures import (
     CONTACT,
     REACTIONS,
-    bearing_loads,
-    covers,
-    headline,
-    holding,
+    bearing_loads_by_name,
+    efficiency_coverage,
+    laws_hold,
     main_figures,
     of_contact,
+    point_by_valid_laws,
     why_not,
 )
 from pitchpoint.cases.built_drive import MEETINGS, TRAIN_PERIOD
@@ -26,15 +26,15 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Curve, law_title, laws
-from pitchpoint.views.inputs import number, set_for_run, words
+from pitchpoint.views.inputs import input_number, input_words, set_for_run
 from pitchpoint.views.point import (
     by_members,
+    driver_speed_ratio,
     of_stage_by_bodies,
     operating_point,
-    speed_ratio,
     way_in_a_turn,
 )
-from pitchpoint.views.screen import cell, efficiency_of, head, shown
+from pitchpoint.views.screen import cell, efficiency_of, head, screen_value
 from pitchpoint.views.section import (
     Block,
     Drawn,
@@ -48,7 +48,7 @@ from pitchpoint.views.section import (
     key_figures,
     made_of,
     stages_together,
-    told_of_variants,
+    variant_warnings,
 )
 from pitchpoint.views.sections.back_driving import (
     ROUGHEST,
@@ -64,10 +64,10 @@ from pitchpoint.views.sections.spread import spread, spread_sentence
 __all__ = [
     "ANSWER",
     "bearing_rows",
-    "beyond",
+    "extrapolated_operation",
+    "operation_summary",
     "operation_words",
     "sharing_words",
-    "summary",
     "teeth_rows",
 ]
 
@@ -83,7 +83,7 @@ def _blocks(page: Page) -> Iterator[Block]:
     variants = [_variant(page, name, outcome) for name, outcome in page.outcomes.items()]
     values = {
         "variants": variants,
-        "warnings": (warnings := told_of_variants(page.outcomes, "warnings", of_stage_by_bodies)),
+        "warnings": (warnings := variant_warnings(page.outcomes, "warnings", of_stage_by_bodies)),
         "first_doubt": show.first_clauses(next(iter(warnings), ""), _SUMMED_UP),
         "several": page.several,
         "designs": page.designs,
@@ -130,19 +130,19 @@ def _sums_of_curves(page: Page) -> Iterator[tuple[Curve, list[str]]]:
 
 def _ratio(outcome: Outcome) -> str:
     """Speed of the driver over that of the loaded member in words; empty where one of them travels."""
-    ratio = speed_ratio(outcome)
-    driver, loaded = (show.the(outcome.manifest[end]) for end in ("driver", "loaded"))
+    ratio = driver_speed_ratio(outcome)
+    driver, loaded = (show.with_article(outcome.manifest[end]) for end in ("driver", "loaded"))
     return (
         ""
         if np.isnan(ratio)
-        else f"{show.number(ratio, 6)}, speed of {driver} over that of {loaded}"
+        else f"{show.number_text(ratio, 6)}, speed of {driver} over that of {loaded}"
     )
 
 
 def _travel(outcome: Outcome) -> str:
     """Way of a loaded member that travels in a turn of the driver, in words; empty where it turns."""
     distance = way_in_a_turn(outcome)
-    driver, loaded = (show.the(outcome.manifest[end]) for end in ("driver", "loaded"))
+    driver, loaded = (show.with_article(outcome.manifest[end]) for end in ("driver", "loaded"))
     return f"{distance} of {loaded} in a turn of {driver}" if distance else ""
 
 
@@ -192,19 +192,19 @@ _SUMMED_UP = 100
 
 def _holding_first(parts: Mapping[str, xr.Dataset]) -> list[tuple[int, str]]:
     """Positions and names of the laws of the case, those that are out of their range at the end."""
-    holds = holding(parts)
+    holds = laws_hold(parts)
     return sorted(enumerate(laws(parts["operation"])), key=lambda one: not holds[one[0]])
 
 
 def _instead(outcome: Outcome) -> list[dict[str, str]]:
     """Main figures by laws of the library, where they hold and none of the case does."""
-    data = headline(outcome.parts)
+    data = point_by_valid_laws(outcome.parts)
     if data is not outcome.parts.get("laws"):
         return []
     return [
         {
             "title": law_title(outcome, law),
-            "covers": covers(data),
+            "covers": efficiency_coverage(data),
             **{
                 name: show.quantity(name, float(data[name].values[k, 0]))
                 for name in ("mean_efficiency", "mean_loss", "mean_friction")
@@ -235,7 +235,9 @@ def _oil_note(outcome: Outcome) -> str:
         row["key"]: row["status"] for row in outcome.manifest["inputs"] if row["table"] == OIL
     }
     return "; ".join(
-        show.pretty(f"{words(outcome, OIL, nu)} ({status[nu]}) at {words(outcome, OIL, at)}")
+        show.pretty(
+            f"{input_words(outcome, OIL, nu)} ({status[nu]}) at {input_words(outcome, OIL, at)}"
+        )
         for nu, at in (("nu_1", "T_1"), ("nu_2", "T_2"))
         if nu in status
     )
@@ -244,7 +246,7 @@ def _oil_note(outcome: Outcome) -> str:
 def operation_words(outcome: Outcome) -> str:
     """The operating point in words."""
     speed, torque, force, temperature = (
-        show.pretty(words(outcome, "operation", key))
+        show.pretty(input_words(outcome, "operation", key))
         for key in ("speed", "torque", "force", "temperature")
     )
     driver, loaded = outcome.manifest["driver"], outcome.manifest["loaded"]
@@ -274,7 +276,7 @@ def _answer(page: Page, outcome: Outcome, law: str, position: int, curve: Curve)
         else "torque ripple",
         "torque_range": _range(data, "input_torque", value),
         "ripple": show.quantity("torque_ripple", value("torque_ripple"), of=data),
-        "covers": covers(data),
+        "covers": efficiency_coverage(data),
         "locked": bool(data["locked"].values[position, 0]),
         "jamming": jamming(data, position),
         "back": back_driving(outcome, law),
@@ -342,7 +344,7 @@ def _static_safeties(data: xr.Dataset, law: int) -> Iterator[tuple[str, str]]:
         safeties = data["static_bearing_safety"].values[law, 0]
         for place, safety in zip(data["place"].values, safeties, strict=True):
             if np.isfinite(safety):
-                yield f"static safety of {place}".replace("_", " "), show.number(float(safety))
+                yield f"static safety of {place}".replace("_", " "), show.number_text(float(safety))
 
 
 _ACROSS = {
@@ -377,8 +379,8 @@ _LOCKS = "self-locking from a friction coefficient of"
 def _screen(outcome: Outcome) -> Iterator[Printed]:
     yield Printed(line=_oil(outcome))
     if "operation" in outcome.parts:
-        yield summary(outcome)
-        yield beyond(outcome)
+        yield operation_summary(outcome)
+        yield extrapolated_operation(outcome)
         yield Printed(rows=teeth_rows(outcome))
         yield Printed(rows=bearing_rows(outcome))
 
@@ -390,21 +392,21 @@ def _oil(outcome: Outcome) -> str:
     return f"Oil: {manifest['oil']}.{averages}"
 
 
-def summary(outcome: Outcome) -> Printed:
+def operation_summary(outcome: Outcome) -> Printed:
     """The operating point by the laws that hold there, and under it how far these disagree."""
-    data = headline(outcome.parts)
+    data = point_by_valid_laws(outcome.parts)
     title = ""
     if data is outcome.parts.get("laws"):
         title = "Laws of the library, which hold here; those of the case are out of their range"
-    elif not any(holding(outcome.parts)):
+    elif not any(laws_hold(outcome.parts)):
         title = "No friction law holds here: extrapolations"
     return Printed(title, _rows(outcome, data), spread_sentence(outcome))
 
 
-def beyond(outcome: Outcome) -> Printed:
+def extrapolated_operation(outcome: Outcome) -> Printed:
     """The operating point by the laws of the case that are out of their range, where others hold."""
-    data, holds = outcome.parts["operation"], holding(outcome.parts)
-    if all(holds) or headline(outcome.parts) is data:
+    data, holds = outcome.parts["operation"], laws_hold(outcome.parts)
+    if all(holds) or point_by_valid_laws(outcome.parts) is data:
         return Printed()
     outside = data.isel(law=[k for k, so in enumerate(holds) if not so])
     return Printed("Out of their range here: extrapolations", _rows(outcome, outside))
@@ -525,8 +527,10 @@ def bearing_rows(outcome: Outcome) -> list[dict[str, str]]:
             if name in data and np.any(data[name])
         }
         | {
-            f"{head('bearing_load')} {place.replace('_', ' ')}": shown("bearing_load", float(load))
-            for place, load in bearing_loads(data, k)
+            f"{head('bearing_load')} {place.replace('_', ' ')}": screen_value(
+                "bearing_load", float(load)
+            )
+            for place, load in bearing_loads_by_name(data, k)
         }
         | dict(_lives(data, k))
         for k, law in enumerate(data["law"].values)
@@ -538,7 +542,7 @@ def _key_figures(outcome: Outcome) -> Iterator[KeyFigure]:
     """Figures of the operating point under the first law that holds there."""
     if "operation" not in outcome.parts:
         return
-    data = headline(outcome.parts)
+    data = point_by_valid_laws(outcome.parts)
 
     def figure(order: float, name: str, variable: str, detail: str = "") -> KeyFigure:
         value = show.quantity(variable, float(data[variable].values[0, 0]), of=data)
@@ -589,7 +593,7 @@ def _efficiencies(
     """
     if lacks := _lacks(data):
         yield KeyFigure(10.0, "Efficiency", "not known", f"lacks the {lacks}, see [losses]")
-    alone = outcome.manifest.get("stages") and covers(data).startswith("teeth alone")
+    alone = outcome.manifest.get("stages") and efficiency_coverage(data).startswith("teeth alone")
     title = "Efficiency of teeth" if alone else "Efficiency"
     place, name = (26.0, "Efficiency without it") if lacks else (10.0, title)
     yield figure(place, name, "mean_efficiency", _certainty(outcome, data))
@@ -597,10 +601,10 @@ def _efficiencies(
 
 def _certainty(outcome: Outcome, data: xr.Dataset) -> str:
     """What the efficiency is of, and how far the laws that apply disagree."""
-    scope = covers(data).partition(":")[0]
+    scope = efficiency_coverage(data).partition(":")[0]
     apart = spread(outcome)
     others = [*_by_other_laws(outcome, data)]
-    if not any(holding(outcome.parts)) and data is outcome.parts["operation"]:
+    if not any(laws_hold(outcome.parts)) and data is outcome.parts["operation"]:
         clauses = [scope, "no fitted law is in its range here"]
     elif apart and apart["points"]:
         clauses = [f"{apart['text']} by the laws in their range", scope]
@@ -629,9 +633,9 @@ def _shortest_life(data: xr.Dataset) -> Iterator[KeyFigure]:
 def _times_input(outcome: Outcome, data: xr.Dataset) -> str:
     """Power that rolls through the meshes of sets, all together, as so many times that of the input."""
     rolls, torque = (float(data[n].values[0, 0]) for n in ("latent_power", "mean_input_torque"))
-    power = torque * number(outcome, "operation", "speed")
+    power = torque * input_number(outcome, "operation", "speed")
     return (
-        f"all meshes, {show.number(rolls / power, 3)} times the input"
+        f"all meshes, {show.number_text(rolls / power, 3)} times the input"
         if power > 0.0
         else "all meshes"
     )
@@ -652,7 +656,7 @@ def _by_other_laws(outcome: Outcome, data: xr.Dataset) -> Iterator[str]:
     efficiencies = zip(laws(operation), operation["mean_efficiency"].values[:, 0], strict=True)
     for law, value in sorted(efficiencies, key=lambda pair: pair[0] in outside):
         if law != laws(data)[0]:
-            of_case = "" if any(holding(outcome.parts)) else " of the case"
+            of_case = "" if any(laws_hold(outcome.parts)) else " of the case"
             outside_here = law in outside and data is not operation
             apart = f"{of_case} out of its range" if outside_here else ""
             yield f"{show.quantity('mean_efficiency', float(value))} by {law}{apart}"

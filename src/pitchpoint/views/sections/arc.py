@@ -13,7 +13,7 @@ from pitchpoint.views import show
 from pitchpoint.views.lines import REGIMES, regimes, titled, values_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.section import Block, Page, Paragraph, Section, naming
-from pitchpoint.views.way import at_origin, beside, place_of
+from pitchpoint.views.way import at_origin, carrying_or_next, places_on_axis
 from pitchpoint.views.where_lost import where_lost
 
 __all__ = ["ARC", "arc_panel", "wave_losses", "wave_sentence"]
@@ -86,7 +86,7 @@ def wave_losses(outcome: Outcome, law: int) -> dict[str, float]:
     data, backwards = outcome.parts["cycle"], period_of(outcome).backwards
     losses = (data["sliding_loss"] + data["rolling_loss"]).values[law]
     energy = losses * data["weight"].values[:, None, None] / data["weight"].values.sum()
-    place = place_of(data)
+    place = places_on_axis(data)
     inwards = place > 0.0 if backwards else place < 0.0
     beside = outcome.parts.get("operation")
     return {
@@ -144,11 +144,11 @@ def _along(
         zone = values[:, :half]
         return (zone.sum(axis=2) if place is None else zone[..., place]).ravel()
 
-    angle = place_of(data)[:, :half, 0].ravel()
+    angle = places_on_axis(data)[:, :half, 0].ravel()
     order = np.argsort(angle, kind="stable")
     load = of_pair(data["load"].values[law])[order]
     values = of_pair(values_of(data, name)[law])[order]
-    near = beside(load > 0.0)
+    near = carrying_or_next(load > 0.0)
     if not near.any():
         return angle[:0], load[:0]
     values = np.where(load > 0.0, values, np.nan)
@@ -157,7 +157,7 @@ def _along(
 
 def _traces(seen: list[tuple[plot.Curve, xr.Dataset, int]], name: str) -> Iterator[plot.Trace]:
     """A line for each contact of a pair, the later ones dashed; one for what they have in sum."""
-    unit = show.unit(VARIABLES[name].display)
+    unit = show.display_unit(VARIABLES[name].display)
     for curve, data, law in seen:
         for place in [None] if name in _SUMS else range(data.sizes["slice"]):
             x, y = _along(data, name, law, place)
@@ -197,7 +197,7 @@ def _range(seen: list[tuple[plot.Curve, xr.Dataset, int]]) -> list[float]:
     ends = [
         float(angle)
         for _, data, law in seen
-        for angle in place_of(data)[data["load"].values[law] > 0.0]
+        for angle in places_on_axis(data)[data["load"].values[law] > 0.0]
     ]
     if not ends:
         return [-30.0, 30.0]

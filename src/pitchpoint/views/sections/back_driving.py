@@ -55,7 +55,7 @@ def back_driving_figure(outcome: Outcome, law: str) -> KeyFigure:
     locked = bool(data["locked"].values[position, 0])
     if locked or acting > 0.5 * limit:
         words = "self-locking" if locked else show.quantity("mean_efficiency", value)
-        at = f"locks from μ = {show.number(limit)} on; at most {show.number(acting)} acts"
+        at = f"locks from μ = {show.number_text(limit)} on; at most {show.number_text(acting)} acts"
         return KeyFigure(_NEARLY_LOCKED, _NAME, words, at)
     if not np.isfinite(value):
         return KeyFigure(_MOVES, _NAME, "undefined", "no power")
@@ -81,8 +81,8 @@ def margin_figure(outcome: Outcome, law: str) -> Iterator[KeyFigure]:
         return
     margin = float(data["self_locking_margin"].values[position, 0])
     order = _NEARLY_LOCKED if acting > 0.5 * limit else _MOVES
-    at = f"times the friction locks it, from μ = {show.number(limit)} on"
-    yield KeyFigure(order + 0.05, "Self-locking margin", show.number(margin), at)
+    at = f"times the friction locks it, from μ = {show.number_text(limit)} on"
+    yield KeyFigure(order + 0.05, "Self-locking margin", show.number_text(margin), at)
 
 
 _NAME = "Back-driving"
@@ -101,14 +101,14 @@ def _would(data: Any, position: int) -> str:
     limit = _limit(data, position)
     if limit > ROUGHEST:
         return f"nor would it below μ = {ROUGHEST:g}"
-    acting = show.number(_nearest(data, position)[0])
-    return f"it would from μ = {show.number(limit)} on, at most {acting} acts"
+    acting = show.number_text(_nearest(data, position)[0])
+    return f"it would from μ = {show.number_text(limit)} on, at most {acting} acts"
 
 
 def jamming(data: Any, position: int) -> str:
     """Friction coefficient at which the mesh locks; empty where none does."""
     limit = _limit(data, position)
-    return locks_from(limit, show.number(limit)) if np.isfinite(limit) else ""
+    return locks_from(limit, show.number_text(limit)) if np.isfinite(limit) else ""
 
 
 def locks_from(limit: float, shown: str) -> str:

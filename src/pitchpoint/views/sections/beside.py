@@ -26,13 +26,13 @@ from pitchpoint.views.figures import (
     layout,
     level,
     line,
+    plotly_text,
     rounded,
     short_axis,
-    text,
 )
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import operating_point
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = [
     "BESIDE",
@@ -88,7 +88,7 @@ def _with_band(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
     if not ends:
         return value
     low, high = (float(there[variable]) for variable in ends)
-    least = shown(ends[0], low, data) if np.isfinite(low) else "friction holds the drive"
+    least = screen_value(ends[0], low, data) if np.isfinite(low) else "friction holds the drive"
     return f"{value}, {least} to {_held(data, ends[1], high)} by breakaway_spread"
 
 
@@ -116,10 +116,10 @@ def running_rows(outcome: Outcome) -> list[dict[str, str]]:
     there = data.sel(speed=speed, method="nearest")
     heads = {name: head(name, data) for name in TORQUES}
     name = show.described("no_load_torque", data).long_name
-    at = f"{name} at {shown('speed', speed, data)} {show.unit_of('speed', data)}"
+    at = f"{name} at {screen_value('speed', speed, data)} {show.unit_of('speed', data)}"
     heads["no_load_torque"] = heads["no_load_torque"].replace(name, at, 1)
     return [
-        {"friction law": law, head("temperature"): shown("temperature", float(degree))}
+        {"friction law": law, head("temperature"): screen_value("temperature", float(degree))}
         | {heads[n]: _screened(data, n, there.isel(law=k, temperature=place)) for n in TORQUES}
         for k, law in enumerate(laws(data))
         for place, degree in enumerate(data["temperature"].values)
@@ -129,7 +129,7 @@ def running_rows(outcome: Outcome) -> list[dict[str, str]]:
 def _screened(data: xr.Dataset, name: str, there: xr.Dataset) -> str:
     """A torque, with the ends of its band where it has one."""
     each = [float(there[one]) for one in (name, *_ends(data, name))]
-    value, *ends = (shown(name, one, data) if np.isfinite(one) else "held" for one in each)
+    value, *ends = (screen_value(name, one, data) if np.isfinite(one) else "held" for one in each)
     return f"{value} ({' to '.join(ends)})" if ends else value
 
 
@@ -179,7 +179,7 @@ def _shares(split: list[tuple[Curve, float, float]]) -> Figure:
         for part, key in ((1, _TEETH), (2, _BESIDE))
     ]
     names = [
-        {"text": text(curve.label).replace(" + ", "<br>+ "), "x": 0, "xanchor": "left"}
+        {"text": plotly_text(curve.label).replace(" + ", "<br>+ "), "x": 0, "xanchor": "left"}
         | {"y": place - 0.22, "yanchor": "bottom", "showarrow": False, "align": "left"}
         for place, (curve, *_) in zip(places, split, strict=True)
     ]
@@ -247,7 +247,7 @@ def in_smaller_unit(traces: list[Trace], look: dict[str, Any], display: str) -> 
     (shown,), smaller_unit = show.handy([top], display)
     if smaller_unit == display:
         return
-    usual, smaller = show.unit(display), show.unit(smaller_unit)
+    usual, smaller = show.display_unit(display), show.display_unit(smaller_unit)
     for trace in traces:
         trace["y"] = [None if v is None else v * shown / top for v in trace["y"]]
         trace["hovertemplate"] = trace["hovertemplate"].replace(usual, smaller)

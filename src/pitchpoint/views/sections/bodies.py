@@ -18,7 +18,7 @@ _TITLES = {"body_mass": "mass m", "body_inertia": "moment of inertia J"}
 
 def bodies_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "bodies", _of_variant)
+    yield from section.blocks_by_variant(page, "bodies", _of_variant)
 
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:

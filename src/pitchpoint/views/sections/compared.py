@@ -5,7 +5,7 @@ from itertools import groupby
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
-from pitchpoint.results.target_rows import TargetRow, counts, in_words
+from pitchpoint.results.target_rows import TargetRow, counts, verdict_sentence
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.section import Block, Drawn, Heading, Page
@@ -49,7 +49,7 @@ def _rows(outcomes: Mapping[str, Outcome]) -> dict[str, Any]:
             for name, rows in by_variant.items()
             for kind, verdicts in counts(rows).items()
         ],
-        "in_words": [(name, in_words(rows)) for name, rows in by_variant.items()],
+        "in_words": [(name, verdict_sentence(rows)) for name, rows in by_variant.items()],
         "missed": [row for row in table if row["verdict"] == "miss"],
         "excluded": [row for row in table if row["verdict"] == "excluded"],
         "variants": [*by_variant],
@@ -69,15 +69,15 @@ def _reasoned(table: list[dict[str, str]]) -> list[dict[str, str]]:
 
 
 def _row(row: TargetRow) -> dict[str, str]:
-    unit = show.unit(row.unit)
+    unit = show.display_unit(row.unit)
     computed, deviation, tolerance = "not computed", "", ""
     if row.computed is not None and row.deviation is not None and isfinite(row.computed):
         digits = _decimals(row.tolerance)
         rounding = digits > _most_decimals(row.computed)  # a tolerance for that alone, or none
         if rounding or digits > _WRITTEN_OUT or abs(row.computed) >= _LARGE:
-            computed = show.number(row.computed, _digits(row.computed, row.tolerance))
+            computed = show.number_text(row.computed, _digits(row.computed, row.tolerance))
             off = round(row.deviation, digits)
-            deviation = f"{'+' * (off > 0.0)}{show.number(off)}"
+            deviation = f"{'+' * (off > 0.0)}{show.number_text(off)}"
         else:
             # What is rounded to nothing has no sign.
             computed = f"{round(row.computed, digits) + 0.0:.{digits}f}"

@@ -10,9 +10,9 @@ from pitchpoint.analyses.figures import of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
-from pitchpoint.views.inputs import words as input_words
+from pitchpoint.views.inputs import input_words
 from pitchpoint.views.lines import Points, folded, gapped, titled
-from pitchpoint.views.path import path_of
+from pitchpoint.views.path import contact_path
 from pitchpoint.views.point import Period, period_of
 
 __all__ = ["CYCLE", "cycle_panel"]
@@ -37,7 +37,7 @@ def _blocks(page: section.Page) -> Iterator[section.Block]:
 
 def _start(page: section.Page) -> str:
     """At which moment a period begins; empty where no point of the way stands out."""
-    paths = [path_of(outcome) for outcome in page.having("teeth.points", "cycle").values()]
+    paths = [contact_path(outcome) for outcome in page.having("teeth.points", "cycle").values()]
     if not paths:
         return ""
     helical = any(path.helical for path in paths)
@@ -221,7 +221,7 @@ def _cycle_words(outcomes: Mapping[str, Outcome]) -> str:
     seen: dict[str, list[str]] = {}
     for variant, outcome in outcomes.items():
         period = period_of(outcome)
-        time = show.number(float(plot.display("time", period.time)))
+        time = show.number_text(float(plot.display("time", period.time)))
         seen.setdefault(f"{period.words}, {time} {show.unit_of('time')}", []).append(variant)
     if len(seen) < 2:
         return next(iter(seen), "")
@@ -273,7 +273,7 @@ def _key_figures(outcome: Outcome) -> Iterator[section.KeyFigure]:
     ratio = data["lambda_ratio"].values[0][data["load"].values[0] > 0.0]
     if ratio.size and np.isfinite(ratio).any():
         least = float(np.nanmin(ratio))
-        value = show.number(least) if least >= _NO_FILM else f"below {_NO_FILM:g}"
+        value = show.number_text(least) if least >= _NO_FILM else f"below {_NO_FILM:g}"
         law = show.pretty(input_words(outcome, "models", "film_thickness"))
         detail = f"{_regime(least)}; thinnest film by {law} over composite Rq"
         asked_by = "models.film_thickness", "models.asperity_load"

@@ -11,7 +11,7 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.inputs import given
+from pitchpoint.views.inputs import input_value
 from pitchpoint.views.lines import titled
 
 __all__ = ["design_charts", "is_design_chart"]
@@ -101,7 +101,8 @@ class _Limits:
         edge = float(limit[highest]) if highest + 1 < x.size else float(x[-1])
         self._region(float(x[0]), edge, _UNDERCUT, "undercut", "left")
         told.append(
-            f"Shaded on the left: the rack undercuts gear 1, x1 below x_min1 = {show.number(limit[highest])}."
+            "Shaded on the left: the rack undercuts gear 1, x1 below x_min1 = "
+            f"{show.number_text(limit[highest])}."
         )
 
     def _tips(self, x: np.ndarray, thickness: np.ndarray, told: list[str]) -> None:
@@ -132,13 +133,13 @@ class _Limits:
 
 
 def _figure(name: str, variable: str, seen: Seen, limits: _Limits) -> plot.Figure:
-    unit = show.unit(VARIABLES[variable].display)
+    unit = show.display_unit(VARIABLES[variable].display)
     traces = []
     for key, data in seen:
         order = np.argsort(data["axis"].values)
         values = plot.display(variable, _valid(variable, data)[order])
         marks = {"mode": "lines+markers", "marker": {"size": 5, "color": key.colour}}
-        traces.append(plot.plain(key, data["axis"].values[order], values, unit, **marks))
+        traces.append(plot.legend_line(key, data["axis"].values[order], values, unit, **marks))
     shapes = list(limits.shapes)
     if variable == "tip_thickness_1" and limits.least > 0.0:
         level = float(plot.display(variable, limits.least))
@@ -173,7 +174,7 @@ def _valid(variable: str, data: xr.Dataset) -> np.ndarray:
 
 def _least_tip(outcome: Outcome, data: xr.Dataset) -> float:
     """Least tip thickness asked for [m]; zero if none was."""
-    thickness = given(outcome, "gears", "least_tip_thickness")
+    thickness = input_value(outcome, "gears", "least_tip_thickness")
     if thickness is None or "module" not in data:
         return 0.0
     return float(thickness) * float(data["module"].values.ravel()[0])

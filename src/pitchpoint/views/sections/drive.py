@@ -16,11 +16,11 @@ import xarray as xr
 from pitchpoint.results.variable import length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
-from pitchpoint.views.inputs import words
+from pitchpoint.views.inputs import input_words
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import of_geometry, period_of
 from pitchpoint.views.sections.passing import gap_panel
-from pitchpoint.views.way import place_of
+from pitchpoint.views.way import places_on_axis
 
 __all__ = ["DRIVE", "loaded_arcs", "picture", "wave_dimensions"]
 
@@ -103,7 +103,7 @@ def loaded_arcs(outcome: Outcome) -> list[list[float]]:
     data = outcome.parts.get("cycle")
     if data is None:
         return []
-    angle, load = np.radians(place_of(data)), data["load"].values[0]
+    angle, load = np.radians(places_on_axis(data)), data["load"].values[0]
     order = np.argsort(angle.ravel(), kind="stable")
     angle, carries = angle.ravel()[order], load.ravel()[order] > 0.0
     loaded = angle[carries]
@@ -119,7 +119,7 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     teeth, manifest = outcome.parts["teeth"], outcome.manifest
 
     def told(metres: float, digits: int = 6) -> str:
-        return show.number(float(_LENGTH.displayed(metres)), digits)
+        return show.number_text(float(_LENGTH.displayed(metres)), digits)
 
     def titled(words: str) -> str:
         return show.bracketed(words, _LENGTH)
@@ -132,12 +132,17 @@ def wave_dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
     driver, loaded = manifest["driver"], manifest["loaded"]
     motion = dict(zip(manifest["members"], manifest["motion"], strict=True))
     rows: list[tuple[str, ...]] = [("number of teeth z", *map(str, _numbers(teeth)))]
-    module, width = (show.pretty(words(outcome, "gears", key)) for key in ("module", "face_width"))
+    module, width = (
+        show.pretty(input_words(outcome, "gears", key)) for key in ("module", "face_width")
+    )
     rows += [("module m", module)] if module else []
     rows += [("face width b", width)] if width else []
     return [
         *rows,
-        (f"speed ratio, {driver} to {loaded}", show.number(motion[driver] / motion[loaded], 6)),
+        (
+            f"speed ratio, {driver} to {loaded}",
+            show.number_text(motion[driver] / motion[loaded], 6),
+        ),
         ("fixed member", next(name for name in motion if name not in (driver, loaded))),
         (titled("deflection w_0"), told(deflection)),
         (titled("diameter of the undeformed neutral line"), told(2.0 * neutral)),

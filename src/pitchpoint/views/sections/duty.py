@@ -98,7 +98,7 @@ def duty_blocks(page: section.Page) -> Iterator[section.Block]:
         "Torque is that of the output on its load, positive along positive speeds. The cycle goes over and "
         "over."
     )
-    yield from section.by_variant(page, _PART, _of_variant)
+    yield from section.blocks_by_variant(page, _PART, _of_variant)
 
 
 def _of_variant(place: int, outcome: Outcome) -> Iterator[section.Block]:

@@ -11,14 +11,14 @@ from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.film_courses import (
     NONE,
-    answered,
-    beneath,
-    courses,
+    figure_notes,
     figures_table,
+    film_course_panel,
     film_key_figure,
-    film_laws,
-    gone,
-    printed,
+    film_law_errors,
+    film_tables,
+    films_sentence,
+    missing_films,
     solved_how,
 )
 from pitchpoint.views.lines import titled
@@ -163,7 +163,7 @@ def _marks(data: xr.Dataset, name: str, phase: int, top: float) -> list[plot.Tra
     for width, key in zip(data["profile_half_width"].values[phase], _keys(data), strict=True):
         x = plot.display("profile_place", np.array([-width, -width, np.nan, width, width]))
         mark = plot.Key(f"±b of {key.label}", key.colour)
-        lines.append(plot.plain(mark, x, y, show.unit_of(name)))
+        lines.append(plot.legend_line(mark, x, y, show.unit_of(name)))
     return lines
 
 
@@ -173,7 +173,7 @@ def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: plot.Key)
     near = np.abs(place[phase, which]) <= 2.0 * np.max(np.abs(place[wide]), initial=0.0)
     x = plot.display("profile_place", place[phase, which, near])
     y = plot.display(name, data[name].values[phase, which, near])
-    return plot.plain(key, x, y, show.unit_of(name))
+    return plot.legend_line(key, x, y, show.unit_of(name))
 
 
 # ---- words
@@ -181,27 +181,27 @@ def _profile(data: xr.Dataset, name: str, phase: int, which: int, key: plot.Key)
 
 def film_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "film", _of_variant)
+    yield from section.blocks_by_variant(page, "film", _of_variant)
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["film"]
     nodes = json.loads(data.attrs["choices"])["nodes"]
     yield section.Paragraph(solved_how(data, "line contacts", f"{nodes} nodes across a contact"))
-    yield from gone(data)
+    yield from missing_films(data)
     yield figures_table(outcome, data)
-    yield from beneath(data)
+    yield from figure_notes(data)
     yield section.Heading("Across the contacts")
     yield section.Paragraph(_of_profiles(data), "note")
     yield profiles_panel(f"profile{position}", data)
     yield section.Heading("Over the mesh cycle")
-    yield courses(f"films{position}", outcome, data)
-    yield from film_laws(data)
+    yield film_course_panel(f"films{position}", outcome, data)
+    yield from film_law_errors(data)
 
 
 def film_answer(outcome: Outcome) -> str:
     """Thinnest film, load on asperities, friction and efficiency by the films, in words."""
-    return answered(outcome.parts["film"])
+    return films_sentence(outcome.parts["film"])
 
 
 def _of_profiles(data: xr.Dataset) -> str:
@@ -222,4 +222,4 @@ def film_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
 
 def film_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
-    return printed("Films", outcome.parts["film"])
+    return film_tables("Films", outcome.parts["film"])

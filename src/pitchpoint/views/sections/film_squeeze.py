@@ -9,11 +9,11 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
-from pitchpoint.views.film_courses import NONE, film_key_figure, told
+from pitchpoint.views.film_courses import NONE, film_key_figure, film_quantity
 from pitchpoint.views.lines import titled
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 from pitchpoint.views.sections.finite_film import maps_panel
-from pitchpoint.views.way import place_of
+from pitchpoint.views.way import places_on_axis
 
 __all__ = ["squeeze_blocks", "squeeze_facts", "squeeze_printed"]
 
@@ -35,7 +35,7 @@ _BESIDE = {
 
 def squeeze_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "film_squeeze", _of_variant)
+    yield from section.blocks_by_variant(page, "film_squeeze", _of_variant)
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
@@ -83,10 +83,11 @@ def _how(data: xr.Dataset) -> str:
 def _table(data: xr.Dataset) -> section.SectionTable:
     """Thinnest films with squeeze and without."""
     rows = [
-        (titled(name), told(data, name), told(data, steady)) for name, steady in _BESIDE.items()
+        (titled(name), film_quantity(data, name), film_quantity(data, steady))
+        for name, steady in _BESIDE.items()
     ]
     if np.isfinite(float(data["squeeze_change"])):
-        rows.append((titled("squeeze_change"), told(data, "squeeze_change"), ""))
+        rows.append((titled("squeeze_change"), film_quantity(data, "squeeze_change"), ""))
     return section.SectionTable(["", "with squeeze", "if all were steady"], rows, compact=True)
 
 
@@ -95,7 +96,7 @@ def _table(data: xr.Dataset) -> section.SectionTable:
 
 def _abscissa(data: xr.Dataset) -> tuple[np.ndarray, str]:
     """Places along the way of the pair with the title of the axis; times where slices have several places."""
-    path = place_of(data)
+    path = places_on_axis(data)
     ways = np.sign(np.diff(path))
     if np.all(ways == ways[0]) and data["path"].attrs["title"]:
         return path, str(data["path"].attrs["axis"])
@@ -139,7 +140,7 @@ def _figure(name: str, title: str, data: xr.Dataset, keys: dict[str, plot.Key]) 
     x, axis = _abscissa(data)
     leading = next(iter(keys))
     lines = [
-        plot.plain(
+        plot.legend_line(
             key,
             x,
             plot.display(variable, data[variable].values, data),
@@ -168,13 +169,13 @@ def _thinnest(data: xr.Dataset) -> str:
     )
 
 
-def answer(data: xr.Dataset) -> str:
+def squeeze_sentence(data: xr.Dataset) -> str:
     """Thinnest film of the engagement, and what squeeze makes of it, in words."""
     if not int(data["solved_moments"]):
         return "No film of the engagement was found."
     words = (
-        f"{told(data, 'smallest_film')} at least over the engagement of a pair, "
-        f"{told(data, 'steady_smallest_film')} if every moment were steady; "
+        f"{film_quantity(data, 'smallest_film')} at least over the engagement of a pair, "
+        f"{film_quantity(data, 'steady_smallest_film')} if every moment were steady; "
     )
     change = float(data["squeeze_change"])
     if not np.isfinite(change):
@@ -182,13 +183,13 @@ def answer(data: xr.Dataset) -> str:
     if abs(change) < _SMALL:
         return f"{words}squeeze changes nothing"
     sense = "thicker" if change > 0.0 else "thinner"
-    part = show.number(100.0 * abs(change), 2)
+    part = show.number_text(100.0 * abs(change), 2)
     return f"{words}squeeze makes the film in the middle up to {part} % {sense}"
 
 
 def screen(data: xr.Dataset) -> Iterator[section.Printed]:
     """What the screen shows."""
-    row = {head(name, data): shown(name, float(data[name]), data) for name in _HEADLINES}
+    row = {head(name, data): screen_value(name, float(data[name]), data) for name in _HEADLINES}
     solved, every = int(data["solved_moments"]), int(data["loaded_moments"])
     yield section.Printed(
         "Squeeze of films", [row], f"{solved} of {every} moments have a film that was found."
@@ -197,7 +198,7 @@ def screen(data: xr.Dataset) -> Iterator[section.Printed]:
 
 def squeeze_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
     """What squeeze comes to."""
-    return [film_key_figure("Squeeze of films", answer(outcome.parts["film_squeeze"]))]
+    return [film_key_figure("Squeeze of films", squeeze_sentence(outcome.parts["film_squeeze"]))]
 
 
 def squeeze_printed(outcome: Outcome) -> Iterable[section.Printed]:

@@ -13,18 +13,18 @@ from pitchpoint.views import section, show
 from pitchpoint.views.film_courses import (
     MOST,
     NONE,
-    answered,
-    beneath,
-    course,
+    contact_place,
     course_figure,
-    courses,
+    cycle_trace,
+    figure_notes,
     figures_table,
+    film_course_panel,
     film_key_figure,
-    film_laws,
-    gone,
+    film_law_errors,
+    film_tables,
+    films_sentence,
+    missing_films,
     of_most,
-    place_of,
-    printed,
     solved_how,
 )
 from pitchpoint.views.lines import titled
@@ -264,7 +264,7 @@ def _symmetric(data: xr.Dataset, kept: int) -> bool:
 
 
 def _at_row(data: xr.Dataset, kept: int, row: int) -> str:
-    place = show.number(float(plot.display("kept_y", data["kept_y"].values[kept, row])))
+    place = show.number_text(float(plot.display("kept_y", data["kept_y"].values[kept, row])))
     unit = show.unit_of("kept_y")
     return f"y = {place} {unit}"
 
@@ -288,7 +288,7 @@ def _cut_across(name: str, data: xr.Dataset, kept: int, variable: str) -> plot.F
 def _line(
     key: plot.Key, along: str, places: np.ndarray, variable: str, values: np.ndarray
 ) -> plot.Trace:
-    return plot.plain(
+    return plot.legend_line(
         key,
         plot.display(along, places),
         plot.display(variable, values),
@@ -371,7 +371,7 @@ def _pressures(name: str, outcome: Outcome, data: xr.Dataset) -> plot.Figure:
         if np.isfinite(near[..., k]).any():
             courses_of[plot.Key(f"{far:g} b from an end", plot.PALETTE[k])] = near[..., k]
     lines = [
-        (key, course(data, "film_pressure", key, of_most(data, values)))
+        (key, cycle_trace(data, "film_pressure", key, of_most(data, values)))
         for key, values in courses_of.items()
     ]
     axis = period_of(outcome).axis
@@ -444,25 +444,25 @@ _WHICH = ("carries most", "has the thinnest film")
 
 def finite_film_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "finite_film", _of_variant)
+    yield from section.blocks_by_variant(page, "finite_film", _of_variant)
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
     data = outcome.parts["finite_film"]
-    yield from gone(data)
+    yield from missing_films(data)
     still = np.unique(data["central_film"].values).size == 1  # one contact, the same at all phases
     times = {"times": "times, at all of which the contact is the same,"} if still else {}
     yield section.Paragraph(solved_how(data, _CONTACTS[data.attrs["solver"]], _grid(data), **times))
     yield figures_table(outcome, data)
-    yield from beneath(data)
+    yield from figure_notes(data)
     if int(data["solved_contacts"]):
         yield from _of_kept(position, data)
     if not still:
         yield section.Heading("Over the mesh cycle")
         name = f"finite{position}"
         figures = [_pressures(f"{name}_pressures", outcome, data)]
-        yield courses(name, outcome, data, figures)
-    yield from film_laws(data)
+        yield film_course_panel(name, outcome, data, figures)
+    yield from film_law_errors(data)
 
 
 def _grid(data: xr.Dataset) -> str:
@@ -485,7 +485,7 @@ def _of_kept(position: int, data: xr.Dataset) -> Iterator[section.Block]:
             continue
         yield section.Heading(f"The contact that {_WHICH[k]}")
         yield section.Paragraph(
-            f"At {place_of(data, phase, pair, part)}: {_loaded(data, places[k])}. Oil enters from "
+            f"At {contact_place(data, phase, pair, part)}: {_loaded(data, places[k])}. Oil enters from "
             "the left where the surfaces run to the right.",
             "note",
         )
@@ -507,9 +507,11 @@ def _loaded(data: xr.Dataset, at: tuple[int, ...]) -> str:
 
 def finite_film_facts(outcome: Outcome) -> Iterable[section.KeyFigure]:
     """What the films come to."""
-    return [film_key_figure("Films of finite contacts", answered(outcome.parts["finite_film"]))]
+    return [
+        film_key_figure("Films of finite contacts", films_sentence(outcome.parts["finite_film"]))
+    ]
 
 
 def finite_film_printed(outcome: Outcome) -> Iterable[section.Printed]:
     """What the screen shows."""
-    return printed("Films of finite contacts", outcome.parts["finite_film"])
+    return film_tables("Films of finite contacts", outcome.parts["finite_film"])

@@ -17,7 +17,7 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.status import Code
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
-from pitchpoint.views.inputs import in_words
+from pitchpoint.views.inputs import quantity_text
 from pitchpoint.views.outlines import visible_points
 
 __all__ = ["formulas_answer", "formulas_blocks", "formulas_lack"]
@@ -239,7 +239,7 @@ def _family(name: str, one: Curves, points: list[_Where], titles: list[str]) -> 
     keys = [plot.Key(show.pretty(title), plot.PALETTE[k]) for k, title in enumerate(titles)]
     unit = show.unit_of(variable)
     traces = [
-        plot.plain(key, *_course(variable, study.data, point, one), unit)
+        plot.legend_line(key, *_course(variable, study.data, point, one), unit)
         for key, (study, point) in zip(keys, points, strict=True)
     ]
     figure = _drawn(name, one, traces, keys)
@@ -295,7 +295,8 @@ def _figure(name: str, one: Curves, point: _Where, beside: Beside) -> plot.Figur
     keys = [plot.Key(column, plot.PALETTE[k]) for k, column in enumerate(columns)]
     shown, unit = _at(one, *point), show.unit_of(one.names[0])
     traces = [
-        plot.plain(key, x, y, unit) for key, x, y in zip(keys, shown["x"], shown["y"], strict=True)
+        plot.legend_line(key, x, y, unit)
+        for key, x, y in zip(keys, shown["x"], shown["y"], strict=True)
     ]
     if any(_turns(y) > _MANY_TURNS for y in shown["y"]):
         for trace in traces:
@@ -385,7 +386,7 @@ def _places(data: xr.Dataset) -> list[str]:
         return [""]
     quantity = quantity_at(data.attrs["sweep_key"])
     return [
-        in_words(float(value), quantity) if quantity is not None else f"{value:.6g}"
+        quantity_text(float(value), quantity) if quantity is not None else f"{value:.6g}"
         for value in data["axis"].values
     ]
 

@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint.analyses.figures import (
     HOLDING,
     HOLDING_BANDS,
-    covered,
+    coverage_sentences,
     error_words,
     held_at_operation,
 )
@@ -17,7 +17,7 @@ from pitchpoint.doubts import in_percent
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
 from pitchpoint.views.figures import laws
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 from pitchpoint.views.sections.beside import starts_doubtfully
 from pitchpoint.views.sections.loss_map import Chart, map_blocks, map_panel
 
@@ -59,7 +59,7 @@ def quadrants_blocks(page: section.Page) -> Iterator[section.Block]:
             "Friction locks the drive against its output at some of these points, see the warnings."
         )
         yield section.Paragraph(sentence, "note")
-    if alone := covered([design.parts for design in there.values()]):
+    if alone := coverage_sentences([design.parts for design in there.values()]):
         yield section.Paragraph(alone, "note")
     yield from map_blocks(map_panel(there, page.curves, OF_OUTPUT))
     yield section.Heading("Held at rest")
@@ -67,7 +67,7 @@ def quadrants_blocks(page: section.Page) -> Iterator[section.Block]:
         HOLDING_BANDS[HOLDING[0]][0] in design.parts[OF_OUTPUT.part] for design in there.values()
     )
     yield section.Paragraph(f"{AT_REST} {IN_BRACKETS}" if banded else AT_REST)
-    yield from section.by_variant(page, HELD, lambda _, outcome: _held(outcome))
+    yield from section.blocks_by_variant(page, HELD, lambda _, outcome: _held(outcome))
 
 
 AT_REST = (
@@ -98,7 +98,7 @@ def _rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         {
             "friction law": law,
-            head("output_torque", data): shown("output_torque", float(load), data),
+            head("output_torque", data): screen_value("output_torque", float(load), data),
         }
         | {head(n, data): _word(there, n, (k, place)) for n in HOLDING}
         for k, law in enumerate(laws(data))
@@ -120,7 +120,9 @@ def _word(data: xr.Dataset, name: str, at: tuple[int, int]) -> str:
     """A torque, with the ends of its band where it has one."""
     names = [name, *(end for end in HOLDING_BANDS.get(name, ()) if end in data)]
     values_of = [float(data[n].transpose("law", "output_torque", ...).values[at]) for n in names]
-    value, *ends = (shown(name, end, data) if np.isfinite(end) else "locked" for end in values_of)
+    value, *ends = (
+        screen_value(name, end, data) if np.isfinite(end) else "locked" for end in values_of
+    )
     return f"{value} ({' to '.join(ends)})" if ends else value
 
 
@@ -151,7 +153,7 @@ def quadrants_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     elif None in ends:
         words, detail = "not known", f"{load} lies beyond the map, or friction jams the teeth"
     else:
-        low = shown(HOLDING[0], ends[0], data)
+        low = screen_value(HOLDING[0], ends[0], data)
         words = f"{low} to {show.quantity(HOLDING[1], ends[1], of=data)}"
         alone = f"for {load} at rest; {_without(ends[0])}"
         band = _of_band(held, data, load)
@@ -179,7 +181,7 @@ def _of_band(held: dict[str, Any], data: xr.Dataset, load: str) -> str:
     if any(held.get(end) is None for end in (widest, least, largest, most)):
         return ""
     narrow, wide = (
-        " to ".join(shown(HOLDING[0], held[end], data) for end in ends)
+        " to ".join(screen_value(HOLDING[0], held[end], data) for end in ends)
         for ends in ((least, largest), (widest, most))
     )
     return (

@@ -6,7 +6,7 @@ from typing import Any
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.inputs import input_rows
+from pitchpoint.views.inputs import printed_input_rows
 from pitchpoint.views.section import Block, Drawn, Page, Section
 
 __all__ = ["INPUTS"]
@@ -40,7 +40,7 @@ def _inputs(outcomes: Mapping[str, Outcome]) -> list[dict[str, Any]]:
     """Inputs by table and key; one entry where the variants agree, one for each where they do not."""
     rows: dict[tuple[str, str], dict[str, dict[str, str]]] = {}
     for variant, outcome in outcomes.items():
-        for row in input_rows(outcome.manifest):
+        for row in printed_input_rows(outcome.manifest):
             rows.setdefault((row["table"], row["key"]), {})[variant] = row
     tables: dict[str, list[dict[str, Any]]] = {}
     for (table, key), by_variant in rows.items():

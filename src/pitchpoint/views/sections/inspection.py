@@ -10,7 +10,7 @@ import xarray as xr
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
 from pitchpoint.views.point import named_members
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = ["INSPECTION", "backlash_rows", "measured_rows"]
 
@@ -117,7 +117,7 @@ def _tolerance_rows(data: xr.Dataset) -> list[Row]:
     return [
         _row(
             show.bracketed(f"{_DEVIATIONS[name]} {name}", tolerance),
-            [show.number(tolerance.displayed(v)) for v in values],
+            [show.number_text(tolerance.displayed(v)) for v in values],
         )
         for name, values in zip(
             data["tolerance"].values, data["flank_tolerance"].values.T, strict=True
@@ -126,7 +126,7 @@ def _tolerance_rows(data: xr.Dataset) -> list[Row]:
 
 
 def _blocks(page: section.Page) -> Iterator[section.Block]:
-    yield from section.by_variant(page, "inspection", _of_variant)
+    yield from section.blocks_by_variant(page, "inspection", _of_variant)
 
 
 def _of_members(outcome: Outcome) -> xr.Dataset:
@@ -207,7 +207,7 @@ def _on_screen(data: xr.Dataset, gear: str) -> dict[str, str]:
         row[head(name)] = " to ".join(dict.fromkeys(_to_a_micrometre(name, values)))
     plays = of_gear["backlash_angle"].values
     ends = plays if plays.size == 1 else plays[[1, -1]]
-    words = [shown("backlash_angle", float(v)) for v in ends]
+    words = [screen_value("backlash_angle", float(v)) for v in ends]
     return row | {head("backlash_angle"): " to ".join(words)}
 
 

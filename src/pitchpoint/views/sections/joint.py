@@ -9,9 +9,9 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.campbell import campbell
-from pitchpoint.views.inputs import words
+from pitchpoint.views.inputs import input_words
 from pitchpoint.views.lines import titled
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = [
     "critical_rows",
@@ -66,9 +66,13 @@ def critical_rows(outcome: Outcome) -> list[dict[str, str]]:
     largest = data["torque_amplitude"].max("speed").values
     return [
         {"wave of the error": str(name)}
-        | {head("wave_amplitude", data): shown("wave_amplitude", float(data["wave_amplitude"][k]))}
         | {
-            f"{head(variable, data)}, {motor}": shown(variable, float(values[m, k]), data)
+            head("wave_amplitude", data): screen_value(
+                "wave_amplitude", float(data["wave_amplitude"][k])
+            )
+        }
+        | {
+            f"{head(variable, data)}, {motor}": screen_value(variable, float(values[m, k]), data)
             for variable, values in (
                 ("critical_speed", data["critical_speed"].values),
                 ("torque_amplitude", largest),
@@ -102,7 +106,7 @@ def _amplitudes(name: str, data: xr.Dataset, variable: str, motors: tuple[int, .
     speed, unit = plot.display("speed", data["speed"], data), show.unit_of(variable, data)
     values = plot.display(variable, data[variable].values, data)
     traces = [
-        plot.plain(
+        plot.legend_line(
             plot.Key(
                 f"{key.label}, {data['motor'].values[m]}", key.colour, "dash" if m else "solid"
             ),
@@ -144,7 +148,7 @@ def _marks(data: xr.Dataset, speed: np.ndarray, motors: tuple[int, ...]) -> list
             there = float(critical[m, k])
             near = any(abs(there - mark) < _APART * np.ptp(speed) for _, mark in marks)
             if speed.min() <= there <= speed.max() and not near:
-                marks.append((show.number(order), there))
+                marks.append((show.number_text(order), there))
     return marks
 
 
@@ -173,7 +177,10 @@ def _title(name: str, data: xr.Dataset) -> str:
 def _own_table(outcome: Outcome) -> section.SectionTable:
     data = outcome.parts["joint"]
     rows = [
-        (_title(name, data), *(shown(name, float(value), data) for value in data[name].values))
+        (
+            _title(name, data),
+            *(screen_value(name, float(value), data) for value in data[name].values),
+        )
         for name in _OWN
     ]
     return section.SectionTable(
@@ -187,7 +194,7 @@ def _curve_rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         {"at the": str(name)}
         | {
-            f"{label} [{show.unit_of(figure, data)}]": shown(
+            f"{label} [{show.unit_of(figure, data)}]": screen_value(
                 figure, float(data[figure].values[k]), data
             )
             for figure, label in _CURVE.items()
@@ -205,13 +212,14 @@ def joint_blocks(page: section.Page) -> Iterator[section.Block]:
         yield section.Paragraph(
             "Motor and load on both sides of the drive, with its error between them: small vibrations by the "
             "tangent of the wind-up at the operating torque. The damping ratio, "
-            f"{words(outcome, 'dynamics', 'damping_ratio')}, is that of the free joint, assumed where the "
+            f"{input_words(outcome, 'dynamics', 'damping_ratio')}, is that of the free joint, "
+            "assumed where the "
             "case gives none."
         )
         yield _own_table(outcome)
         rows = critical_rows(outcome)
         corner, *heads = rows[0]
-        yield section.turned(heads, [[*row.values()] for row in rows], corner)
+        yield section.transposed_table(heads, [[*row.values()] for row in rows], corner)
         yield from section.naming(title, [joint_panel(f"joint{position}", "", outcome)])
         rows = _curve_rows(outcome)
         yield section.Paragraph(_whole(data))
@@ -237,7 +245,8 @@ def _friction(data: xr.Dataset) -> str:
     """What friction of the flanks adds to the damping."""
     most = float(data["flank_damping_ratio"].max())
     return (
-        f"Friction of the flanks adds up to {show.number(most)} to the damping ratio: the drive has them "
+        f"Friction of the flanks adds up to {show.number_text(most)} to the damping ratio: the "
+        "drive has them "
         "sliding, and friction opposes a vibration only where that turns the sliding back. The loop of "
         "torque over wind-up is that of a drive at rest."
     )

@@ -10,7 +10,7 @@ from pitchpoint.analyses.figures import error_ranges
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = [
     "error_blocks",
@@ -78,7 +78,7 @@ def _turn(name: str, data: xr.Dataset) -> plot.Figure:
     unit = show.unit_of("kinematic_error", data)
     quarter = float(plot.display("turn_angle", 0.5 * np.pi))
     traces = [
-        plot.plain(
+        plot.legend_line(
             key,
             *plot.continued(
                 angle, plot.display("kinematic_error", data["kinematic_error"][k], data)
@@ -112,7 +112,7 @@ def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> plot.F
     orders, unit = _orders(lines), show.unit_of("kinematic_error_spectrum", data)
     return plot.Figure(
         name,
-        f"Orders by {show.the(member)}",
+        f"Orders by {show.with_article(member)}",
         [
             plot.order_bars(key, orders, lines[k][orders], unit)
             for k, key in enumerate(_KEYS.values())
@@ -124,7 +124,7 @@ def _spectrum(name: str, data: xr.Dataset, position: int, member: str) -> plot.F
             yaxis={"rangemode": "tozero"},
             barmode="group",
         ),
-        f"With deviations of {show.the(member)} alone, over {data.attrs['turn_alone']}: "
+        f"With deviations of {show.with_article(member)} alone, over {data.attrs['turn_alone']}: "
         f"{show.quantity('kinematic_error_range', alone, of=data)} peak to peak under the operating torque. "
         "Orders of the mesh, about the number of teeth, are not drawn.",
         tuple(replace(key, dash="") for key in _KEYS.values()),
@@ -144,7 +144,10 @@ def error_rows(outcome: Outcome) -> list[dict[str, str]]:
     name, data = "kinematic_error_range", outcome.parts.get("kinematic_error")
     return [
         {head(name, data): curve}
-        | {cause: shown(name, float(v), data) for cause, v in zip(causes, values, strict=True)}
+        | {
+            cause: screen_value(name, float(v), data)
+            for cause, v in zip(causes, values, strict=True)
+        }
         for curve, causes, values in error_ranges(data)
     ]
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = ["limit_rows", "limits_blocks", "limits_facts", "limits_printed", "stress_rows"]
 
@@ -90,7 +90,7 @@ def _life(data: xr.Dataset) -> str:
 
 def limits_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "load_limits", _of_variant)
+    yield from section.blocks_by_variant(page, "load_limits", _of_variant)
 
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
@@ -116,7 +116,7 @@ def limits_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     if data is None:
         return
     if "goodman_safety" in data:
-        safety = show.number(float(data["goodman_safety"].min()))
+        safety = show.number_text(float(data["goodman_safety"].min()))
         yield section.KeyFigure(
             40.0,
             "Flexspline safety",
@@ -142,7 +142,11 @@ def limits_printed(outcome: Outcome) -> Iterator[section.Printed]:
     names = ("alternating_stress", "torsional_stress", "mean_stress", "goodman_safety")
     rows = [
         {"flexspline, smooth ring and tube": str(place)}
-        | {head(name): shown(name, float(data[name].values[k])) for name in names if name in data}
+        | {
+            head(name): screen_value(name, float(data[name].values[k]))
+            for name in names
+            if name in data
+        }
         for k, place in enumerate(data["place"].values)
     ]
     yield section.Printed(rows=rows, line=" ".join(_on_screen(data)))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import covered, why_not
+from pitchpoint.analyses.figures import coverage_sentences, why_not
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import show
@@ -290,7 +290,7 @@ def _beginning(name: str, data: xr.Dataset, chart: Chart, shown: Mapping[str, An
     if len(shown["x"]) == data.sizes[across] or min(shown["x"]) < 0.0:
         return ""
     ends = (
-        f"{show.number(shown[axis][0])}\u00a0{show.unit_of(of, data)}"
+        f"{show.number_text(shown[axis][0])}\u00a0{show.unit_of(of, data)}"
         for axis, of in (("x", across), ("y", up))
     )
     return f" From {' and '.join(ends)} on, the smallest that were computed above rest."
@@ -437,7 +437,7 @@ def _blocks(page: Page) -> Iterator[Block]:
         f"Mean loss and mean efficiency over driver speed and {load}. At zero {load.split()[-1]} or zero "
         f"speed no power is transmitted and the efficiency is undefined.{_colours(there)}"
     )
-    if alone := covered([outcome.parts for outcome in there.values()]):
+    if alone := coverage_sentences([outcome.parts for outcome in there.values()]):
         yield Paragraph(alone, "note")
     yield from map_blocks(map_panel(there, page.curves))
     lines = efficiency_panel(

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE, headline
+from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE, point_by_valid_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.campbell import campbell
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = [
     "motion_answer",
@@ -157,7 +157,8 @@ def _lines(
     else:
         x, along = plot.display("time", data["time"].values, data), show.axis_title("time", data)
     traces = [
-        plot.plain(key, *plot.continued(x, y), unit) for key, y in zip(keys, values, strict=True)
+        plot.legend_line(key, *plot.continued(x, y), unit)
+        for key, y in zip(keys, values, strict=True)
     ]
     axes = plot.layout(along, plot.short_axis(variable, data))
     return plot.Figure(name, titled(variable, data), traces, axes, "", tuple(keys), NONE)
@@ -274,7 +275,7 @@ def _branches(
     for (direction, dash), values in zip(looks, courses[:1] if alike else courses, strict=False):
         key = plot.Key(f"speed {direction}", colour, dash)
         dots = {"mode": "lines+markers", "marker": {"size": 4, "color": colour}}
-        traces.append(plot.plain(key, speed, values, unit, **dots))
+        traces.append(plot.legend_line(key, speed, values, unit, **dots))
         keys.append(key)
     return traces, keys, "Speed rising and falling give the same." if alike else ""
 
@@ -303,7 +304,7 @@ def _efficiencies(name: str, data: xr.Dataset) -> plot.Figure:
     still = plot.Key("without vibration", plot.GREY, "dot")
     speed = plot.display("speed", data["speed"].values, data)
     values = plot.display("quasi_static_efficiency", data["quasi_static_efficiency"].values)
-    traces.append(plot.plain(still, speed, values, "%"))
+    traces.append(plot.legend_line(still, speed, values, "%"))
     if len(keys) == 1:
         keys = [plot.Key("in motion", plot.PALETTE[0])]
     axes = plot.layout(show.axis_title("speed", data), plot.short_axis("mean_efficiency"))
@@ -432,7 +433,7 @@ def _balance(data: xr.Dataset) -> str:
 
 def motion_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "motion", _of_period)
+    yield from section.blocks_by_variant(page, "motion", _of_period)
     for position, title, outcome in page.each("motion_against_speed"):
         yield section.Heading(f"Against speed: {title}" if title else "Against speed")
         data = outcome.parts["motion_against_speed"]
@@ -499,7 +500,7 @@ def motion_printed(outcome: Outcome) -> Iterator[section.Printed]:
             "Motion with friction", line=f"No values are shown: {motion_answer(outcome)}."
         )
         return
-    row = {head(name, data): shown(name, float(data[name]), data) for name in _ON_SCREEN}
+    row = {head(name, data): screen_value(name, float(data[name]), data) for name in _ON_SCREEN}
     sentence = f"{motion_answer(outcome)}; natural frequencies {_frequencies(data)}."
     yield section.Printed("Motion with friction", [row], sentence)
     if "start_up" in outcome.parts:
@@ -525,7 +526,7 @@ def _last_speeds(data: xr.Dataset) -> Iterator[tuple[str, str]]:
 
 def _frequencies(data: xr.Dataset) -> str:
     values = ", ".join(
-        show.number(float(frequency))
+        show.number_text(float(frequency))
         for frequency in plot.display("natural_frequency", data["natural_frequency"].values, data)
     )
     return f"{values} {show.unit_of('natural_frequency', data)}"
@@ -536,6 +537,8 @@ def motion_facts(outcome: Outcome) -> Iterator[section.KeyFigure]:
     figure = section.key_figure(34.0, "In motion", motion_answer(outcome), " of the teeth with")
     law, parts = str(outcome.parts["motion"].attrs["law"]), outcome.parts
     stands_by = (
-        plot.law_title(outcome, plot.laws(headline(parts))[0]) if "operation" in parts else law
+        plot.law_title(outcome, plot.laws(point_by_valid_laws(parts))[0])
+        if "operation" in parts
+        else law
     )
     yield figure if stands_by == law else replace(figure, detail=f"by {law}; {figure.detail}")

@@ -12,7 +12,7 @@ from pitchpoint.views import figures as plot
 from pitchpoint.views import show
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point
-from pitchpoint.views.way import at_origin, place_of
+from pitchpoint.views.way import at_origin, places_on_axis
 
 __all__ = ["gap_panel"]
 
@@ -40,17 +40,17 @@ def _clearance(name: str, outcome: Outcome) -> plot.Figure:
     teeth = outcome.parts["teeth"]
     angle = plot.display("clearance_angle", teeth["clearance_angle"].values)
     clearance = np.maximum(teeth["clearance"].values, _LEAST)
-    unit = show.unit(VARIABLES["clearance"].display)
+    unit = show.display_unit(VARIABLES["clearance"].display)
     key = plot.Key("clearance of the unloaded flanks", plot.PALETTE[0])
-    traces = [plot.plain(key, angle, plot.display("clearance", clearance), unit)]
+    traces = [plot.legend_line(key, angle, plot.display("clearance", clearance), unit)]
     keys = [key]
-    least = f"{show.number(float(plot.display('clearance', _LEAST)))} {unit}"
+    least = f"{show.number_text(float(plot.display('clearance', _LEAST)))} {unit}"
     note = f"Clearances below {least} are drawn there: flanks without one slide on each other."
     places = _carrying(outcome)
     if places.size:
         there = np.interp(places, angle, plot.display("clearance", clearance))
         traces.append(
-            plot.plain(_TEETH, places, there, unit)
+            plot.legend_line(_TEETH, places, there, unit)
             | {"mode": "markers", "marker": {"size": 7, "color": _TEETH.colour}}
         )
         keys.append(_TEETH)
@@ -91,7 +91,7 @@ def _carrying(outcome: Outcome) -> np.ndarray:
         return np.zeros(0)
     half = data.sizes["pair"] // int(data["path"].attrs["zones"])
     carries = data["load"].values[0, 0, :half].max(axis=-1) > 0.0
-    return plot.display("clearance_angle", np.radians(place_of(data)[0, :half, 0][carries]))
+    return plot.display("clearance_angle", np.radians(places_on_axis(data)[0, :half, 0][carries]))
 
 
 def _passing(name: str, outcome: Outcome) -> plot.Figure:
@@ -123,7 +123,7 @@ def _passing(name: str, outcome: Outcome) -> plot.Figure:
             xaxis={"range": [3.2 * wide, -3.2 * wide], "constrain": "domain"},
             yaxis={"range": [-1.15 * height, 1.2 * deep], **axis},
         ),
-        f"Every {show.number(degrees(_step(teeth)))}° of p. Seen from the circular spline, "
+        f"Every {show.number_text(degrees(_step(teeth)))}° of p. Seen from the circular spline, "
         "which is shaded, outwards from its tip circle; positive rotation is to the left. Equal scale "
         "in both directions.",
         (
@@ -173,7 +173,7 @@ def _outline(corners: np.ndarray, low: float, angle: float, reach: float) -> plo
         "x": plot.rounded(x, 4),
         "y": plot.rounded(y, 4),
         "line": {"color": colour, "width": 2.4 if colour == plot.INK else 0.9},
-        "hovertemplate": f"p = {show.number(angle)}°<extra></extra>",
+        "hovertemplate": f"p = {show.number_text(angle)}°<extra></extra>",
     }
 
 

@@ -11,12 +11,12 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import show
 from pitchpoint.views.lines import REGIMES, SHORT, Points, gapped, regimes, titled, values_of
-from pitchpoint.views.path import StraightPath, marks, path_of
+from pitchpoint.views.path import StraightPath, contact_path, path_marks
 from pitchpoint.views.point import named_members
 from pitchpoint.views.section import Block, Page, Paragraph, Section
 from pitchpoint.views.where_lost import where_lost
 
-__all__ = ["PATH", "along", "loss_places", "loss_sentence", "path_panel"]
+__all__ = ["PATH", "loss_places", "loss_sentence", "path_panel", "points_along_path"]
 
 _ALONG = {
     "load_share": "",
@@ -55,14 +55,14 @@ def _closing(page: Page) -> Iterator[Block]:
 
 
 def _loss_words(outcome: Outcome, law: int) -> str:
-    path = path_of(outcome)
+    path = contact_path(outcome)
     return loss_sentence(loss_places(outcome.parts["cycle"], law, path), path)
 
 
 def path_panel(outcomes: Mapping[str, Outcome], known: plot.Curves) -> plot.Panel:
     """Quantities of one pair on its way from A to E."""
     seen = list(_seen(outcomes, known))
-    path = path_of(next(iter(outcomes.values())))
+    path = contact_path(next(iter(outcomes.values())))
     figures = [_along_figure(name, seen, path) for name in _ALONG] if seen else []
     return plot.Panel("Along the path of contact", figures, [curve for curve, *_ in seen])
 
@@ -88,7 +88,7 @@ def loss_places(data: xr.Dataset, law: int, path: StraightPath) -> dict[tuple[st
     }
 
 
-def along(data: xr.Dataset, name: str, law: int, path: StraightPath) -> Points:
+def points_along_path(data: xr.Dataset, name: str, law: int, path: StraightPath) -> Points:
     """Place [base pitches] and SI value, the pairs one after the other.
 
     Quantities of a point of the flanks stand over the place on the path from A; those of a helical
@@ -148,7 +148,7 @@ def _seen(
     """Curve, cycle, position of the law and path for every law of every variant."""
     for variant, outcome in outcomes.items():
         if "cycle" in outcome.parts:
-            data, path = outcome.parts["cycle"], path_of(outcome)
+            data, path = outcome.parts["cycle"], contact_path(outcome)
             for position, law in enumerate(plot.laws(data)):
                 yield known[variant, law], data, position, path
 
@@ -156,10 +156,10 @@ def _seen(
 def _along_figure(
     name: str, seen: list[tuple[plot.Curve, xr.Dataset, int, StraightPath]], first: StraightPath
 ) -> plot.Figure:
-    unit = show.unit(VARIABLES[name].display)
+    unit = show.display_unit(VARIABLES[name].display)
     traces = []
     for curve, data, law, path in seen:
-        x, y = along(data, name, law, path)
+        x, y = points_along_path(data, name, law, path)
         traces.append(plot.line(curve, x, plot.display(name, y), unit))
     shown, remark = plot.merged(traces)
     of_line = first.helical and name in _WHOLE
@@ -169,7 +169,7 @@ def _along_figure(
         plot.short_axis(name),
         xaxis={"range": [-0.02 * end, 1.02 * end]},
         yaxis={} if name == "sliding_velocity" else {"rangemode": "nonnegative"},
-        **({} if of_line else marks(first)),
+        **({} if of_line else path_marks(first)),
     )
     title = "Loss of the pair" if name == "loss" else titled(name)
     if name == "lambda_ratio":
@@ -207,12 +207,13 @@ def loss_sentence(shares: Mapping[tuple[str, str], float], path: StraightPath) -
 def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     """What the letters mean for this contact ratio and driver."""
     sample = next(iter(outcomes.values()))
-    path, members = path_of(sample), named_members(sample)
+    path, members = contact_path(sample), named_members(sample)
     notes = [_letters(path, members[1])]
     if path.helical:
         notes.append(
             f"Contact lines cross the face at an angle, so a pair is in contact for "
-            f"{show.number(path.contact_ratio)} base pitches, {show.number(path.overlap_ratio)} longer "
+            f"{show.number_text(path.contact_ratio)} base pitches, "
+            f"{show.number_text(path.overlap_ratio)} longer "
             "than the path. Over the path from A stand values at the middle of the face, over the base "
             "pitches since the pair entered those of the whole contact line."
         )
@@ -226,7 +227,7 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
     if not path.helical and any(cycle.sizes["slice"] > 1 for cycle in cycles):
         notes.append("What differs over the face is shown where the load on it is highest.")
     if path.backwards:
-        driver = show.the(str(sample.manifest["driver"]))
+        driver = show.with_article(str(sample.manifest["driver"]))
         notes.append(
             f"{driver[0].upper()}{driver[1:]} drives, so every pair runs from E to A, and the phase runs "
             "backwards."
@@ -237,7 +238,7 @@ def _point_notes(outcomes: Mapping[str, Outcome]) -> list[str]:
 def _letters(path: StraightPath, second: str) -> str:
     ends = (
         "A and E are the ends of the path of contact, A at the tip of "
-        f"{show.the(second)}; C is the pitch point"
+        f"{show.with_article(second)}; C is the pitch point"
     )
     return f"{ends}; B and D lie one base pitch from E and A." if "B" in path.points else f"{ends}."
 

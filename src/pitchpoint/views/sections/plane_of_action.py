@@ -136,7 +136,7 @@ class PlaneOfAction:
             "pitch": round(1e3 * self.base_pitch, 6),
             "width": round(1e3 * self.face_width, 6),
             "slope": cos(self.base_helix_angle),
-            "unit": show.unit(_LENGTH.display),
+            "unit": show.display_unit(_LENGTH.display),
             "of_mm": float(_LENGTH.displayed(1e-3)),
         }
 

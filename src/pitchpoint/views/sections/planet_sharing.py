@@ -15,7 +15,7 @@ __all__ = ["sharing_blocks", "sharing_facts", "sharing_printed"]
 
 def sharing_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "planet_sharing", _of_variant)
+    yield from section.blocks_by_variant(page, "planet_sharing", _of_variant)
 
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
@@ -104,7 +104,9 @@ def _rated(outcome: Outcome) -> Iterator[section.KeyFigure]:
     if factors:
         stage, (factor, whence) = max(factors.items(), key=lambda item: item[1][0])
         detail = f"{stage}; {whence}" if len(trains) > 1 else whence
-        yield section.KeyFigure(42.0, "Load on a planet", f"K_γ {show.number(factor, 3)}", detail)
+        yield section.KeyFigure(
+            42.0, "Load on a planet", f"K_γ {show.number_text(factor, 3)}", detail
+        )
 
 
 def _whence(factor: float, planets: int, sharing: xr.Dataset | None) -> str:
@@ -117,7 +119,7 @@ def _whence(factor: float, planets: int, sharing: xr.Dataset | None) -> str:
     if factor != usual:
         return f"by [strength]; over an equal share of {planets} planets"
     known = "assumed by IEC 61400-4" if planets in MESH_LOAD else f"assumed for {planets} planets"
-    least = f"; deviations alone: {show.number(by_deviations, 3)}"
+    least = f"; deviations alone: {show.number_text(by_deviations, 3)}"
     return f"{known}{least if np.isfinite(by_deviations) else ''}; over an equal share"
 
 

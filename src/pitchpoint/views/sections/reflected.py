@@ -23,7 +23,7 @@ Row = tuple[str, ...]
 
 def reflected_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "reflected", _of_variant)
+    yield from section.blocks_by_variant(page, "reflected", _of_variant)
 
 
 def _of_variant(_: int, outcome: Outcome) -> Iterator[section.Block]:
@@ -46,7 +46,9 @@ def _by_tolerances(data: xr.Dataset) -> bool:
 
 
 def _carriers(data: xr.Dataset) -> str:
-    return " and ".join(show.the(carrier) for carrier in json.loads(data.attrs["carriers"]))
+    return " and ".join(
+        show.with_article(carrier) for carrier in json.loads(data.attrs["carriers"])
+    )
 
 
 def _of_planets(data: xr.Dataset) -> Iterator[str]:

@@ -5,8 +5,8 @@ import xarray as xr
 
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
-from pitchpoint.views.figures import PALETTE, Figure, Key, layout, plain
-from pitchpoint.views.path import marks, path_of
+from pitchpoint.views.figures import PALETTE, Figure, Key, layout, legend_line
+from pitchpoint.views.path import contact_path, path_marks
 from pitchpoint.views.point import named_members
 
 __all__ = ["sliding_figure", "specific_sliding"]
@@ -22,7 +22,7 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
         name: of the figure in the page.
         outcome: a result whose teeth are there.
     """
-    teeth, path = outcome.parts["teeth"], path_of(outcome)
+    teeth, path = outcome.parts["teeth"], contact_path(outcome)
     place = np.linspace(0.0, path.transverse_ratio, 121)
     start, pitch = float(teeth["points"].values[0]), float(teeth["base_pitch"])
     values = specific_sliding(teeth, start + place * pitch)
@@ -35,11 +35,15 @@ def sliding_figure(name: str, outcome: Outcome) -> Figure:
     return Figure(
         name,
         "Specific sliding along the path of contact",
-        [plain(key, place, course, "") for key, course in zip(keys, values.T, strict=True)],
+        [legend_line(key, place, course, "") for key, course in zip(keys, values.T, strict=True)],
         layout(
-            path.axis, "ζ", xaxis={"range": [-0.02 * end, 1.02 * end]}, yaxis=cut, **marks(path)
+            path.axis,
+            "ζ",
+            xaxis={"range": [-0.02 * end, 1.02 * end]},
+            yaxis=cut,
+            **path_marks(path),
         ),
-        note + (f" The lowest value is {show.number(lowest)}." if cut else ""),
+        note + (f" The lowest value is {show.number_text(lowest)}." if cut else ""),
         keys,
     )
 

@@ -43,14 +43,14 @@ def spread(outcome: Outcome) -> dict[str, Any] | None:
     if not computed.size:
         text = "all lock the mesh" if locked.all() else "undefined, no power"
         return {"text": text, "rows": rows, "points": "", "outside": outside}
-    ends = [*dict.fromkeys(show.number(100 * end) for end in (computed.min(), computed.max()))]
+    ends = [*dict.fromkeys(show.number_text(100 * end) for end in (computed.min(), computed.max()))]
     text = f"{' to '.join(ends)} %"
     if locked.any():
         names = [law_title(outcome, law) for law, so in zip(laws(data), locked, strict=True) if so]
         text += f"; locked by {', '.join(names)}"
     if outcome.manifest.get("plastic"):
         text += ", by laws for steel on steel; none was fitted to plastic teeth"
-    points = show.number(100 * np.ptp(computed)) if len(ends) > 1 else ""
+    points = show.number_text(100 * np.ptp(computed)) if len(ends) > 1 else ""
     return {"text": text, "rows": rows, "points": points, "outside": outside}
 
 
@@ -90,7 +90,8 @@ def _frictions(outcome: Outcome) -> Iterator[str]:
         (low, least), (high, most) = ends
         yield (
             f"Mean friction is {show.quantity('mean_friction', least)} ({low}) to "
-            f"{show.quantity('mean_friction', most)} ({high}), {show.number(most / least)} times as much."
+            f"{show.quantity('mean_friction', most)} ({high}), {show.number_text(most / least)} "
+            "times as much."
         )
 
 

@@ -11,8 +11,16 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import show
 from pitchpoint.views.lines import titled
-from pitchpoint.views.screen import head, shown
-from pitchpoint.views.section import Block, Heading, Page, Printed, Section, naming, turned
+from pitchpoint.views.screen import head, screen_value
+from pitchpoint.views.section import (
+    Block,
+    Heading,
+    Page,
+    Printed,
+    Section,
+    naming,
+    transposed_table,
+)
 
 __all__ = ["STAGES", "stage_rows", "stage_words"]
 
@@ -26,7 +34,9 @@ def stage_rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         {"friction law": law, "stage": stage_words(outcome, at, stage)}
         | {
-            head(name, data): _of_stage(shown, name, float(data[name].values[k, 0, at]), data)
+            head(name, data): _of_stage(
+                screen_value, name, float(data[name].values[k, 0, at]), data
+            )
             for name in names
         }
         for k, law in enumerate(plot.laws(data))
@@ -83,7 +93,7 @@ def _blocks(page: Page) -> Iterator[Block]:
                 )
                 for at, stage in enumerate(data["stage"].values)
             ]
-            yield turned(titles, columns, f"by {law}")
+            yield transposed_table(titles, columns, f"by {law}")
     for position, title, outcome in page.each("torsion.stage_wind_up"):
         figure = _wind_up(f"stages{position}", outcome.parts["torsion"])
         yield from naming(title, [plot.Panel(title, [figure])])
@@ -106,7 +116,7 @@ def _wind_up(name: str, data: xr.Dataset) -> plot.Figure:
     return plot.Figure(
         name,
         titled(variable, data),
-        [plot.plain(key, load, turned[:, at], unit) for at, key in enumerate(keys)],
+        [plot.legend_line(key, load, turned[:, at], unit) for at, key in enumerate(keys)],
         plot.layout(
             plot.short_axis("torque", data),
             plot.short_axis(variable, data),

@@ -89,13 +89,13 @@ def _outside_standard(data: xr.Dataset) -> list[str]:
 
 
 def _over_phase(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
-    phase, unit = data["phase"].values, show.unit(VARIABLES["mesh_stiffness"].display)
+    phase, unit = data["phase"].values, show.display_unit(VARIABLES["mesh_stiffness"].display)
     keys = [plot.pair_key(pair) for pair in range(data.sizes["pair"])]
     traces = [
-        plot.plain(key, *_shown(phase, values), unit)
+        plot.legend_line(key, *_shown(phase, values), unit)
         for key, values in zip(keys, _touching(data, "pair_stiffness"), strict=True)
     ]
-    total = plot.plain(_TOTAL, *_shown(phase, data["mesh_stiffness"].values), unit)
+    total = plot.legend_line(_TOTAL, *_shown(phase, data["mesh_stiffness"].values), unit)
     total["line"] = {**total["line"], "width": 3}
     standard = _OUTSIDE if _outside_standard(data) else _STANDARD
     levels = {_MEAN: "mean_stiffness", standard: "standard_stiffness"}
@@ -117,7 +117,7 @@ def _of_a_pair(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
     entered = data["entered"].values.ravel()
     order = np.argsort(entered, kind="stable")
     values = _touching(data, "pair_stiffness").ravel()[order]
-    unit = show.unit(VARIABLES["pair_stiffness"].display)
+    unit = show.display_unit(VARIABLES["pair_stiffness"].display)
     key = plot.Key("pair", plot.PALETTE[0])
     x, y = _shown(entered[order], values)
     seen = np.isfinite(values)
@@ -125,7 +125,7 @@ def _of_a_pair(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
     return plot.Figure(
         f"{name}_pair",
         "Stiffness of one pair from its entry to its exit",
-        [plot.plain(key, x, y, unit)],
+        [plot.legend_line(key, x, y, unit)],
         plot.layout(
             f"{period.pitch}es since the pair entered ε_0",
             plot.short_axis("pair_stiffness"),
@@ -146,7 +146,9 @@ def _shown(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _level(key: plot.Key, value: float, unit: str) -> plot.Trace:
-    return plot.plain(key, [0.0, 1.0], [float(plot.display("mesh_stiffness", value))] * 2, unit)
+    return plot.legend_line(
+        key, [0.0, 1.0], [float(plot.display("mesh_stiffness", value))] * 2, unit
+    )
 
 
 def stiffness_blocks(page: section.Page) -> Iterator[section.Block]:

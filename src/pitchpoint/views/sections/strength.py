@@ -8,13 +8,13 @@ from math import inf
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import apart, doubts_of, without_repeats
+from pitchpoint.doubts import doubts_of, ranked_doubts, without_repeats
 from pitchpoint.results.by_stage import as_label
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
-from pitchpoint.views.inputs import words
+from pitchpoint.views.inputs import input_words
 from pitchpoint.views.point import member_names
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 
 __all__ = ["STRENGTH", "strength_rows"]
 
@@ -115,8 +115,8 @@ def _cell(data: xr.Dataset, name: str, gear: int) -> str:
     if value != value:
         return "–"
     if name in _COUNTED:
-        return show.number(value)
-    return "∞" if value == inf else shown(name, value, data)
+        return show.number_text(value)
+    return "∞" if value == inf else screen_value(name, value, data)
 
 
 def _told(data: xr.Dataset, name: str) -> list[str]:
@@ -125,7 +125,7 @@ def _told(data: xr.Dataset, name: str) -> list[str]:
 
 def _doubts(data: xr.Dataset) -> dict[str, list[str]]:
     """What fails of a rating, and what is doubtful."""
-    return apart(doubts_of(data.attrs))
+    return ranked_doubts(doubts_of(data.attrs))
 
 
 def _caveats(data: xr.Dataset) -> list[str]:
@@ -166,7 +166,7 @@ def _by_gear(rows: Sequence[Mapping[str, str]]) -> section.SectionTable:
     for row in rows:
         stage = f", stage\u00a0{row['stage']}" if "stage" in row else ""
         columns.append([f"{row['gear']}{stage}", *(row[name] for name in heads)])
-    return section.turned(heads, columns)
+    return section.transposed_table(heads, columns)
 
 
 def _blocks_of(_: int, outcome: Outcome) -> Iterator[section.Block]:
@@ -185,7 +185,7 @@ def _blocks_of(_: int, outcome: Outcome) -> Iterator[section.Block]:
 
 
 def _blocks(page: section.Page) -> Iterator[section.Block]:
-    return section.by_variant(page, "strength", _blocks_of)
+    return section.blocks_by_variant(page, "strength", _blocks_of)
 
 
 _ASKED, _UNASKED = 12.0, 40.0
@@ -212,7 +212,7 @@ def _answer(outcome: Outcome) -> Iterator[section.KeyFigure]:
             least = safeties.isel(at)
             place, duty = f"at {_place(least, outcome)}", _duty(outcome, at, f"{part}_cycles")
             detail = "; ".join([place, *_doubted(outcome, least, stress), duty])
-            value = show.number(float(least))
+            value = show.number_text(float(least))
             yield section.KeyFigure(order, f"Safety of {where}", value, detail, f"{value} {place}")
         elif data[stress].notnull().any():
             largest = data[stress].argmax([*data[stress].dims])
@@ -246,11 +246,13 @@ def _duty(outcome: Outcome, place: Mapping[Hashable, xr.DataArray], cycles: str)
         values = data[name]
         return float(values.isel({dim: at for dim, at in place.items() if dim in values.dims}))
 
-    count, factor = there(cycles), show.number(there("application_factor"))
+    count, factor = there(cycles), show.number_text(there("application_factor"))
     stage = str(data["stage"].values[int(place["stage"])]) if "stage" in place else ""
-    time = words(outcome, "stages", f"{stage.partition(' ')[0]}.strength.life") if stage else ""
-    time = time or words(outcome, "strength", "life")
-    life = f"{show.number(count)} load cycles{f' ({time})' if time else ''}"
+    time = (
+        input_words(outcome, "stages", f"{stage.partition(' ')[0]}.strength.life") if stage else ""
+    )
+    time = time or input_words(outcome, "strength", "life")
+    life = f"{show.number_text(count)} load cycles{f' ({time})' if time else ''}"
     if not np.isfinite(count):
         life = "to endure"
     elif not time and not outcome.manifest["plastic"]:

@@ -7,10 +7,10 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, covered, of_contact
+from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, coverage_sentences, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.keys import quantity_at
-from pitchpoint.doubts import apart, doubts_of
+from pitchpoint.doubts import doubts_of, ranked_doubts
 from pitchpoint.registry import enumerated
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.rounding import ROUNDING
@@ -28,12 +28,12 @@ from pitchpoint.views.figures import (
     laws,
     layout,
     line,
+    plotly_text,
     short_axis,
-    text,
 )
-from pitchpoint.views.inputs import in_words
+from pitchpoint.views.inputs import quantity_text
 from pitchpoint.views.lines import titled
-from pitchpoint.views.screen import efficiency_of, head, shown
+from pitchpoint.views.screen import efficiency_of, head, screen_value
 from pitchpoint.views.sections.design_chart import design_charts, is_design_chart
 
 __all__ = [
@@ -179,7 +179,7 @@ def _rows(seen: Seen, columns: list[str]) -> Iterator[tuple[str, ...]]:
     """Every point of a study under every law."""
     for curve, data, law in seen:
         for point in range(data.sizes["point"]):
-            place = show.number(float(_swept(data)[0][point]), 6) if "axis" in data else ""
+            place = show.number_text(float(_swept(data)[0][point]), 6) if "axis" in data else ""
             cells = _cells(data, law, columns, point)
             yield str(data.attrs["title"]), curve.label, place, *cells
 
@@ -289,7 +289,7 @@ def _figure(name: str, variable: str, seen: Seen, axis: Any) -> Figure:
         name,
         titled(variable, like),
         [_trace(curve, data, law, variable, axis, unit) for curve, data, law in seen],
-        layout(text(axis(like)[1]), short_axis(variable, like)),
+        layout(plotly_text(axis(like)[1]), short_axis(variable, like)),
     )
 
 
@@ -313,7 +313,7 @@ def _change(variable: str, axis: Any, seen: Seen) -> list[Any]:
     traces = [_trace(curve, data, law, variable, axis, "") for curve, data, law in seen]
     return [
         {key: [trace[key] for trace in traces] for key in "xy"},
-        {"xaxis.title.text": show.subscripts(text(axis(seen[0][1])[1]))},
+        {"xaxis.title.text": show.subscripts(plotly_text(axis(seen[0][1])[1]))},
     ]
 
 
@@ -328,7 +328,7 @@ def _swept(data: xr.Dataset) -> tuple[np.ndarray, str]:
     if kind:
         unit = unit_in_use(kind, unit)
         values = np.asarray(units.convert(values, unit, kind))
-    return values, f"{words} [{show.unit(unit)}]" if show.unit(unit) else words
+    return values, f"{words} [{show.display_unit(unit)}]" if show.display_unit(unit) else words
 
 
 def _words_of(key: str) -> str:
@@ -353,7 +353,7 @@ def _blocks(page: section.Page) -> Iterator[section.Block]:
         ),
         "note",
     )
-    if alone := covered([outcome.parts for outcome in page.outcomes.values()]):
+    if alone := coverage_sentences([outcome.parts for outcome in page.outcomes.values()]):
         yield section.Paragraph(alone, "note")
     warnings = _warnings(page)
     if warnings:
@@ -391,7 +391,7 @@ def _warns(outcome: Outcome) -> list[tuple[str, str]]:
         (str(data.attrs["title"]), text)
         for name, data in outcome.parts.items()
         if is_study(name)
-        for text in apart(doubts_of(data.attrs))["warnings"]
+        for text in ranked_doubts(doubts_of(data.attrs))["warnings"]
         if text not in outcome.manifest["warnings"]
     ]
 
@@ -455,7 +455,9 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
     if idle := all(_lossless(data, law_number) for law_number in range(data.sizes["law"])):
         names = tuple(name for name in names if name not in _OF_LOSS)
     cells = {
-        head(n, data): marked(n, _endless(n, value) or shown(n, value, data), data, law, point)
+        head(n, data): marked(
+            n, _endless(n, value) or screen_value(n, value, data), data, law, point
+        )
         for n, value in ((n, float(data[n].values[law, point])) for n in names if n in data)
     }
     efficiency = {} if idle else efficiency_of(data)
@@ -470,7 +472,7 @@ def _swept_row(data: xr.Dataset, law: int, point: int) -> dict[str, str]:
 def _place(value: float, key: str) -> str:
     """Place on the axis of a sweep as case files write it."""
     quantity = quantity_at(key)
-    return f"{value:.6g}" if quantity is None else in_words(float(value), quantity)
+    return f"{value:.6g}" if quantity is None else quantity_text(float(value), quantity)
 
 
 def _lacks(page: section.Page) -> str | None:

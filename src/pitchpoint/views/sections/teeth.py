@@ -10,14 +10,14 @@ from pitchpoint.results.variable import Variable, angle, deviation, dimensionles
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
 from pitchpoint.views.figures import Panel, pair_key
-from pitchpoint.views.inputs import words
-from pitchpoint.views.path import StraightPath, path_of
+from pitchpoint.views.inputs import input_words
+from pitchpoint.views.path import StraightPath, contact_path
 from pitchpoint.views.picture import picture_of
 from pitchpoint.views.point import by_bodies, named_members, of_geometry
 from pitchpoint.views.sections.plane_of_action import plane_of_action
 from pitchpoint.views.sections.sliding import sliding_figure
 
-__all__ = ["TEETH", "dimensions"]
+__all__ = ["TEETH", "dimension_rows"]
 
 _PARTS = ("teeth.layer_tooth",)
 
@@ -37,8 +37,8 @@ def _blocks(page: section.Page) -> Iterator[section.Block]:
             "plane": _plane(outcome),
             "sliding": sliding,
             "members": named_members(outcome),
-            "dimensions": dimensions(outcome),
-            "path": path_of(outcome),
+            "dimensions": dimension_rows(outcome),
+            "path": contact_path(outcome),
             "ring": _ring(outcome),
         }
         yield section.Drawn("teeth.html.jinja", {"t": values}, [sliding])
@@ -78,12 +78,12 @@ def _plane(outcome: Outcome) -> dict[str, Any]:
 def _length(millimetres: float) -> str:
     """A length of the picture in words [mm in]."""
     value = float(LENGTH.displayed(1e-3 * millimetres))
-    return f"{show.number(value)} {show.unit(LENGTH.display)}"
+    return f"{show.number_text(value)} {show.display_unit(LENGTH.display)}"
 
 
-def dimensions(outcome: Outcome) -> list[tuple[str, ...]]:
+def dimension_rows(outcome: Outcome) -> list[tuple[str, ...]]:
     """Names of the main dimensions, each with its values for both members or the one they share."""
-    teeth, path = outcome.parts["teeth"], path_of(outcome)
+    teeth, path = outcome.parts["teeth"], contact_path(outcome)
     rows = [
         *_numbers(teeth, {"teeth": ("number of teeth z", 1.0, 6, PLAIN)}),
         *_given(outcome, "module", "normal module m_n" if path.helical else "module m"),
@@ -132,7 +132,7 @@ def _sums_up(outcome: Outcome) -> Iterator[section.SectionTable]:
     """Dimensions that a drawing has, of many meshes the main ones; what both gears share stands twice."""
     meshes = section.by_mesh({"": outcome}, *_PARTS)
     for name, mesh in meshes.items():
-        rows = [row for row in dimensions(mesh) if not row[0].startswith(_DETAILS)]
+        rows = [row for row in dimension_rows(mesh) if not row[0].startswith(_DETAILS)]
         if len(meshes) > _LEGIBLE:
             rows = [row for row in rows if row[0].startswith(_MAIN)]
         both = [row if len(row) == 3 else (row[0], row[1], row[1]) for row in rows]
@@ -197,12 +197,12 @@ def _numbers(teeth: xr.Dataset, named: Mapping[str, Dimension]) -> list[Row]:
 
 def _number(value: float, digits: int) -> str:
     """A dimension; a dash for a member that does not have it."""
-    return show.number(value, digits) if np.isfinite(value) else "–"
+    return show.number_text(value, digits) if np.isfinite(value) else "–"
 
 
 def _given(outcome: Outcome, key: str, title: str) -> list[Row]:
     """Row of an input as the case gives it."""
-    entries = words(outcome, "gears", key).replace(" deg", "°").split(" / ")
+    entries = input_words(outcome, "gears", key).replace(" deg", "°").split(" / ")
     shown = [show.pretty(entry).replace("-", "−") for entry in entries if entry]
     return [(title, *shown)] if shown else []
 

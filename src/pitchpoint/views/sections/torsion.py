@@ -13,8 +13,8 @@ from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.lines import folded, overlaid
 from pitchpoint.views.point import Period, operating_point, period_of
-from pitchpoint.views.screen import head, shown
-from pitchpoint.views.way import beside, place_of
+from pitchpoint.views.screen import head, screen_value
+from pitchpoint.views.way import carrying_or_next, places_on_axis
 
 __all__ = [
     "part_rows",
@@ -163,7 +163,7 @@ def _distribution(name: str, data: xr.Dataset) -> plot.Figure:
     force = plot.display("tooth_force", data["tooth_force"])
     zones, origin = (data["path"].attrs[name] for name in ("zones", "origin"))
     half = data.sizes["pair"] // int(zones)
-    angle = place_of(data)[:, :half].ravel()
+    angle = places_on_axis(data)[:, :half].ravel()
     order = np.argsort(angle, kind="stable")
     drawn = _shades(data)
     traces = [_course(key, angle[order], force[k, :, :half].ravel()[order]) for k, key in drawn]
@@ -207,7 +207,7 @@ def _over_cycle(name: str, data: xr.Dataset, period: Period) -> plot.Figure:
     for k, key in shown:
         values = data["angular_transmission_error"].values[k]
         phase, error = folded(data["phase"].values, values - _mean(data["phase"].values, values))
-        traces.append(plot.plain(key, phase, plot.display(ripple, error, data), unit))
+        traces.append(plot.legend_line(key, phase, plot.display(ripple, error, data), unit))
     return plot.Figure(
         name,
         "Static transmission error over the mesh cycle, less its mean",
@@ -228,9 +228,9 @@ def _mean(phase: np.ndarray, values: np.ndarray) -> float:
 
 def _course(key: plot.Key, angle: np.ndarray, force: np.ndarray) -> plot.Trace:
     """Line of the force where a tooth carries, with gaps where it does not touch."""
-    unit = show.unit(VARIABLES["tooth_force"].display)
-    near = beside(force > 0.0)
-    return plot.plain(key, angle[near], np.where(force > 0.0, force, np.nan)[near], unit)
+    unit = show.display_unit(VARIABLES["tooth_force"].display)
+    near = carrying_or_next(force > 0.0)
+    return plot.legend_line(key, angle[near], np.where(force > 0.0, force, np.nan)[near], unit)
 
 
 def _loop(name: str, variant: str, data: xr.Dataset, known: plot.Curves) -> plot.Figure:
@@ -250,10 +250,12 @@ def _loop(name: str, variant: str, data: xr.Dataset, known: plot.Curves) -> plot
         x = np.concatenate([wind_up, wind_up[::-1]])
         colour = key.colour if curve is None else curve.colour
         key = plot.Key(f"with friction: {key.label}", colour)
-        trace = plot.plain(key, x, np.concatenate([up, down[::-1]]), unit)
+        trace = plot.legend_line(key, x, np.concatenate([up, down[::-1]]), unit)
         traces.append({**trace, "fill": "toself", "fillcolor": f"{colour}22"})
         keys.append(key)
-    traces.append(plot.plain(_ELASTIC, wind_up, plot.display("torque", data["torque"], data), unit))
+    traces.append(
+        plot.legend_line(_ELASTIC, wind_up, plot.display("torque", data["torque"], data), unit)
+    )
     return plot.Figure(
         name,
         f"{words.load.capitalize()} over {words.way}, growing and shrinking",
@@ -278,7 +280,7 @@ def _against(name: str, variable: str, title: str, data: xr.Dataset, key: plot.K
         name,
         f"{title} against {_words(data).load}",
         [
-            plot.plain(
+            plot.legend_line(
                 key,
                 plot.display("torque", data["torque"], data),
                 plot.display(variable, values, data),
@@ -307,12 +309,13 @@ def _bearing(name: str, data: xr.Dataset) -> plot.Figure:
         plot.display("zone_load", data["zone_load"]),
     )
     traces = [
-        plot.plain(key, torque, values, unit) for key, values in zip(ends, loads.T, strict=False)
+        plot.legend_line(key, torque, values, unit)
+        for key, values in zip(ends, loads.T, strict=False)
     ]
     alike = np.allclose(loads[:, 0], loads[:, -1], rtol=1e-4, equal_nan=True)
     keys = (plot.Key(f"either end of {origin}", plot.GREY),) if alike else ends
     if alike:
-        traces = [plot.plain(keys[0], torque, loads[:, 0], unit)]
+        traces = [plot.legend_line(keys[0], torque, loads[:, 0], unit)]
     return plot.Figure(
         name,
         "Radial load of the teeth on the wave generator",
@@ -333,9 +336,9 @@ def wind_up_rows(outcome: Outcome) -> list[dict[str, str]]:
     data = outcome.parts["torsion"]
     torques = data["torque"].values
     return [
-        {head("torque", data): shown("torque", float(torques[k]), data)}
+        {head("torque", data): screen_value("torque", float(torques[k]), data)}
         | {
-            head(name, data): shown(name, float(data[name].values[k]), data)
+            head(name, data): screen_value(name, float(data[name].values[k]), data)
             for name in WIND_UP
             if name in data
         }
@@ -364,8 +367,8 @@ def part_rows(outcome: Outcome) -> list[dict[str, str]]:
     return [
         {
             "part of the wind-up": str(data["part"].values[k]),
-            words: shown("wind_up_part", wind_ups[k]),
-            "share [%]": show.number(100.0 * wind_ups[k] / sum(wind_ups)),
+            words: screen_value("wind_up_part", wind_ups[k]),
+            "share [%]": show.number_text(100.0 * wind_ups[k] / sum(wind_ups)),
         }
         for k in order
     ]
@@ -391,7 +394,7 @@ def slope_rows(outcome: Outcome) -> list[dict[str, str]]:
         {"friction law": str(law)}
         | slopes
         | {
-            f"{words} [{show.unit_of(name)}]": shown(name, float(data[name].values[k]))
+            f"{words} [{show.unit_of(name)}]": screen_value(name, float(data[name].values[k]))
             for words, name in (
                 ("lost motion at ±4 % of the torque", "catalogue_lost_motion"),
                 ("hysteresis loss", "hysteresis_loss"),
@@ -509,7 +512,7 @@ def _slopes(data: xr.Dataset) -> str:
     values = np.asarray(
         show.displayed(variable_of(data, "slope_stiffness"), stiffnesses.values), float
     )
-    shown_slopes = ", ".join(show.number(float(value), _OF_SLOPES) for value in values)
+    shown_slopes = ", ".join(show.number_text(float(value), _OF_SLOPES) for value in values)
     units = {show.unit_of(name, data) for name in ("slope_stiffness", "torsional_stiffness")}
     unit = f" {show.unit_of('slope_stiffness', data)}" if len(units) > 1 else ""
     return f"{names[0]}–{names[-1]} {shown_slopes}{unit}"

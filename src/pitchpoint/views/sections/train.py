@@ -10,7 +10,7 @@ from pitchpoint.gears.cylindrical.design import RING_RIM_RATIO
 from pitchpoint.results.variable import length
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
-from pitchpoint.views.inputs import given
+from pitchpoint.views.inputs import input_value
 from pitchpoint.views.sections.planet_sharing import sharing_facts
 from pitchpoint.views.train_picture import train_pictures
 
@@ -83,7 +83,7 @@ def _around(
             apart = float(of_mesh["centre_distance"])
             root, tip = (float(of_mesh[f"{end}_radius"].values[at]) for end in ("root", "tip"))
             if float(of_mesh["teeth"].values[at]) < 0.0:
-                bores = given(outcome, "stages", f"{mesh['label']}.gears.bore_diameter")
+                bores = input_value(outcome, "stages", f"{mesh['label']}.gears.bore_diameter")
                 outside = bores[at] if bores else 2.0 * RING_RIM_RATIO * root
                 rim = f"{'' if bores else 'assumed '}rim {_length(0.5 * outside - root)}"
                 reached.append((outside, rim, apart))
@@ -94,7 +94,7 @@ def _around(
 
 def _length(metres: float) -> str:
     variable = length("", "")
-    return f"{show.number(float(variable.displayed(metres)))} {show.unit(variable.display)}"
+    return f"{show.number_text(float(variable.displayed(metres)))} {show.display_unit(variable.display)}"
 
 
 def train_printed(outcome: Outcome) -> Iterator[section.Printed]:
@@ -114,7 +114,9 @@ def _words(train: Record) -> str:
     rate = train["rates"][loaded] / train["rates"][turned]
     sense = "the same way" if rate > 0.0 else "the other way"
     stands = f", {' and '.join(held)} held" if held else ""
-    return f"{turned} drives, {loaded} turns {sense}{stands}: ratio {show.number(1.0 / rate, 6)}"
+    return (
+        f"{turned} drives, {loaded} turns {sense}{stands}: ratio {show.number_text(1.0 / rate, 6)}"
+    )
 
 
 def _carrier(train: Record) -> float:
@@ -129,8 +131,11 @@ def _bodies(train: Record) -> list[tuple[str, ...]]:
     return [
         (
             body,
-            *(show.number(sense * body_rate * minute, 5) for body_rate in (rate, rate - carrier)),
-            show.number(sense * rate, 5),
+            *(
+                show.number_text(sense * body_rate * minute, 5)
+                for body_rate in (rate, rate - carrier)
+            ),
+            show.number_text(sense * rate, 5),
         )
         for body, rate in train["rates"].items()
     ]
@@ -146,7 +151,7 @@ def _meshes(train: Record) -> list[tuple[str, ...]]:
         rows.append(
             (
                 " and ".join(mesh["bodies"]),
-                show.number(abs(against) * teeth_1 * train["speed"] / (2.0 * pi), 5),
+                show.number_text(abs(against) * teeth_1 * train["speed"] / (2.0 * pi), 5),
                 f"{teeth_1} and {teeth_2}",
                 "none, hunting" if divisor == 1 else str(divisor),
                 f"{turns} turn{'s' * (turns != 1)} of the {mesh['bodies'][0]}",

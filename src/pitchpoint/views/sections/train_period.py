@@ -153,7 +153,7 @@ def _forces(name: str, data: xr.Dataset) -> Iterator[plot.Figure]:
         yield plot.Figure(
             f"{name}{at}",
             f"Normal force of the teeth, {mesh}",
-            [plot.plain(key, *gapped(angle, forces[k]), unit) for k, key in enumerate(keys)],
+            [plot.legend_line(key, *gapped(angle, forces[k]), unit) for k, key in enumerate(keys)],
             plot.layout(
                 plot.short_axis("driver_angle"),
                 plot.short_axis("contact_force", data),

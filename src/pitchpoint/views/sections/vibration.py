@@ -13,10 +13,10 @@ from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import show
-from pitchpoint.views.inputs import words
+from pitchpoint.views.inputs import input_words
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.screen import head, shown
+from pitchpoint.views.screen import head, screen_value
 from pitchpoint.views.section import (
     Block,
     Heading,
@@ -68,7 +68,7 @@ def vibration_answer(outcome: Outcome) -> list[tuple[str, str]]:
     return [
         _error(data, k, torque) if ok else (reason, f"at {torque}")
         for k, (torque, ok, reason) in enumerate(
-            zip(_torques(data), _found(data), sentences(data), strict=True)
+            zip(_torques(data), _found(data), steady_state_sentences(data), strict=True)
         )
     ]
 
@@ -78,7 +78,7 @@ def _error(data: xr.Dataset, index: int, torque: str) -> tuple[str, str]:
     return spread, f"dynamic, peak to peak at {torque}, {mean} in the mean"
 
 
-def sentences(data: xr.Dataset) -> list[str]:
+def steady_state_sentences(data: xr.Dataset) -> list[str]:
     """What became of the steady state, for each torque."""
     return [str(sentence) for sentence in json.loads(data.attrs.get("status", "[]"))]
 
@@ -91,7 +91,7 @@ def _found(data: xr.Dataset) -> list[bool]:
 def _torques(data: xr.Dataset) -> list[str]:
     unit = show.unit_of("torque", data)
     values = plot.display("torque", data["torque"], data)
-    return [f"{show.number(float(value))} {unit}" for value in values]
+    return [f"{show.number_text(float(value))} {unit}" for value in values]
 
 
 def _cell(data: xr.Dataset, name: str, torque: int) -> str:
@@ -105,7 +105,7 @@ def _table(outcome: Outcome) -> SectionTable:
     data = outcome.parts["vibration"]
     count, load = range(data.sizes["torque"]), show.described("torque", data).long_name
     rows = [(_title(name), *(_cell(data, name, k) for k in count)) for name in _ROWS]
-    damping = words(outcome, "dynamics", "damping_ratio")
+    damping = input_words(outcome, "dynamics", "damping_ratio")
     if damping:
         rows.insert(3, ("damping ratio ξ", *[damping] * len(count)))
     return SectionTable([f"At the {load}", *_torques(data)], rows, compact=True)
@@ -114,7 +114,7 @@ def _table(outcome: Outcome) -> SectionTable:
 def _status(data: xr.Dataset) -> str:
     """What became of the steady state, once for torques that share it."""
     shared: dict[str, list[str]] = {}
-    for torque, sentence in zip(_torques(data), sentences(data), strict=True):
+    for torque, sentence in zip(_torques(data), steady_state_sentences(data), strict=True):
         shared.setdefault(sentence, []).append(torque)
     return "; ".join(f"at {', '.join(torques)} {status}" for status, torques in shared.items())
 
@@ -138,7 +138,9 @@ def _missing(data: xr.Dataset) -> str:
     """Torques without a steady state that could be drawn, in words."""
     lines = [
         f"At {torque} no dynamic values are shown: {sentence}."
-        for torque, ok, sentence in zip(_torques(data), _found(data), sentences(data), strict=True)
+        for torque, ok, sentence in zip(
+            _torques(data), _found(data), steady_state_sentences(data), strict=True
+        )
         if not ok
     ]
     return " ".join(lines)
@@ -162,7 +164,7 @@ def _errors(name: str, data: xr.Dataset, backwards: bool) -> plot.Figure:
             looks["transmission_error"] = replace(key, label=f"{key.label}, dynamic")
         for variable, look in reversed(looks.items()):
             x, y = _over_time(data, data[variable].values[k], backwards)
-            traces.append(plot.plain(look, x, plot.display(variable, y), unit))
+            traces.append(plot.legend_line(look, x, plot.display(variable, y), unit))
             keys.append(look)
     return plot.Figure(
         f"{name}_error",
@@ -189,7 +191,7 @@ def _factors(name: str, data: xr.Dataset, backwards: bool) -> plot.Figure:
                 plot.pair_key(pair), label=f"{plot.pair_key(pair).label}, {torque}", dash=dash
             )
             course = np.where(np.abs(values) > 1e-12, values, np.nan)
-            traces.append(plot.plain(key, *_over_time(data, course, backwards), ""))
+            traces.append(plot.legend_line(key, *_over_time(data, course, backwards), ""))
     keys = [plot.pair_key(pair) for pair in range(data.sizes["pair"])]
     if len(torques) > 1:
         keys += [plot.Key(f"at {torque}", "#5b6873", dash) for torque, dash in torques]
@@ -279,7 +281,7 @@ def _against_speed(name: str, variable: str, outcome: Outcome) -> plot.Figure:
         )
         for branch, (dash, course) in branches.items():
             look = replace(key, label=f"{key.label}, {branch}", dash=dash)
-            traces.append(plot.plain(look, speed, course, unit, **_dots(key.colour, branch)))
+            traces.append(plot.legend_line(look, speed, course, unit, **_dots(key.colour, branch)))
     keys = _keys(data)
     note = "Speed rising and falling give the same."
     if not alike:
@@ -336,8 +338,8 @@ def _gaps(data: xr.Dataset) -> Iterator[str]:
         for torque, statuses in zip(_torques(data), by_torque, strict=True):
             for code in np.unique(statuses[statuses != 0]):
                 where = speed[statuses == code]
-                ends = f"{show.number(where[0])} to {show.number(where[-1])} {unit}"
-                words = ends if where.size > 1 else f"{show.number(where[0])} {unit}"
+                ends = f"{show.number_text(where[0])} to {show.number_text(where[-1])} {unit}"
+                words = ends if where.size > 1 else f"{show.number_text(where[0])} {unit}"
                 why = sentences[int(code)] if int(code) < len(sentences) else "not solved"
                 left_out = f"{where.size} of {speed.size} speeds ({words}) are left out, {why}."
                 ways.setdefault((torque, left_out), []).append(str(direction))
@@ -391,7 +393,7 @@ def _natural(outcome: Outcome) -> KeyFigure:
     data = outcome.parts["vibration"]
     natural = float(data["natural_frequency"].values[-1])
     met = show.quantity("speed", natural * period_of(outcome).angle, of=data)
-    driver = show.the(outcome.manifest["driver"])
+    driver = show.with_article(outcome.manifest["driver"])
     value = show.quantity("natural_frequency", natural)
     return KeyFigure(36.0, "Natural frequency", value, f"that of the mesh at {met} of {driver}")
 
@@ -401,8 +403,8 @@ def _screen(outcome: Outcome) -> Iterator[Printed]:
     data = outcome.parts.get("vibration")
     if data is not None:
         rows = [
-            {head("torque", data): shown("torque", float(torque), data)}
-            | {head(name): shown(name, float(data[name].values[k])) for name in FIGURES}
+            {head("torque", data): screen_value("torque", float(torque), data)}
+            | {head(name): screen_value(name, float(data[name].values[k])) for name in FIGURES}
             for k, torque in enumerate(data["torque"].values)
         ]
         yield Printed(rows=rows)

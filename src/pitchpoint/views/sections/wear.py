@@ -45,7 +45,7 @@ _FIGURES = ("final_cycles", "final_cycles_error", "life_hours", "final_depth", "
 
 def wear_blocks(page: section.Page) -> Iterator[section.Block]:
     """Blocks of the section."""
-    yield from section.by_variant(page, "wear", _of_variant)
+    yield from section.blocks_by_variant(page, "wear", _of_variant)
 
 
 def _of_variant(position: int, outcome: Outcome) -> Iterator[section.Block]:
@@ -204,7 +204,7 @@ def _choice(figures: list[plot.Figure], data: xr.Dataset, step: int) -> plot.Cho
         figure.name: [_moved(lines(data, member, step)), {}]
         for figure, (lines, member) in zip(figures, drawn, strict=False)
     }
-    return plot.Choice(show.number(turns), changes)
+    return plot.Choice(show.number_text(turns), changes)
 
 
 def _moved(lines: list[plot.Trace]) -> dict[str, list[Any]]:
@@ -239,7 +239,7 @@ def _lines(data: xr.Dataset, member: int, step: int) -> list[plot.Trace]:
         largest = data["profile_radius"].values[member], data["profile_depth"].values[step, member]
     courses = [(x, depth.mean(axis=1)), largest][-len(_keys(data)) :]
     return [
-        plot.plain(
+        plot.legend_line(
             key,
             plot.display(place, at[order := np.argsort(at, kind="stable")]),
             plot.display("worn_depth", values[order]),
@@ -288,7 +288,7 @@ def _outlines(data: xr.Dataset, member: int, step: int) -> list[plot.Trace]:
     gone = _magnified(data) * data["worn_depth"].values[step, member].max(axis=1)
     order, unit = np.argsort(height), show.unit_of("flank_height")
     return [
-        plot.plain(
+        plot.legend_line(
             key,
             plot.display("flank_half_thickness", (half - off * np.cos(angle))[order]),
             plot.display("flank_height", (height - off * np.sin(angle))[order]),
@@ -360,7 +360,9 @@ def _course(name: str, data: xr.Dataset, variable: str, keys: tuple[plot.Key, ..
     """A variable over the cycles, a line for each key."""
     x, unit = data["cycles"].values, show.unit_of(variable, data)
     courses = plot.display(variable, data[variable].values).reshape(x.size, -1).T
-    lines = [plot.plain(key, x, course, unit) for key, course in zip(keys, courses, strict=True)]
+    lines = [
+        plot.legend_line(key, x, course, unit) for key, course in zip(keys, courses, strict=True)
+    ]
     look = plot.layout(
         f"turns of {data.attrs['driver']}, N",
         plot.short_axis(variable, data),

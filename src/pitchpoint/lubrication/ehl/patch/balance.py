@@ -18,10 +18,10 @@ __all__ = [
     "Stencil",
     "Through",
     "Work",
-    "balance",
+    "face_flows",
+    "flow_balance",
     "heat_beside",
     "stencil",
-    "through",
     "work",
 ]
 
@@ -53,7 +53,7 @@ ALONG, ACROSS = 4, 4
 """Nodes of a row, and rows, that a cell knows: from two before it to one behind."""
 
 
-def balance(problem: PatchProblem, oil: Field, gap: Field, rate: Array) -> tuple[Inner, Inner]:
+def flow_balance(problem: PatchProblem, oil: Field, gap: Field, rate: Array) -> tuple[Inner, Inner]:
     """What flows into each cell more than out of it, and what a pressure of one there takes out.
 
     Conductances along the faces between cells of a row: geometric mean ahead of the middle, arithmetic one
@@ -74,7 +74,7 @@ def balance(problem: PatchProblem, oil: Field, gap: Field, rate: Array) -> tuple
 
     Source: Reynolds (1886), over cells of finite volume.
     """
-    flows = through(problem, oil, gap)
+    flows = face_flows(problem, oil, gap)
     width, spacing = _widths(problem)
     along = flows.conducts * jnp.diff(oil, axis=1) - flows.drawn
     beside = flows.sides * jnp.diff(_walled(oil), axis=0) - flows.carried
@@ -110,8 +110,8 @@ class Through(NamedTuple):
     carried: Array
 
 
-def through(problem: PatchProblem, oil: Field, gap: Field) -> Through:
-    """What flows through the faces between cells; arguments as in `balance`."""
+def face_flows(problem: PatchProblem, oil: Field, gap: Field) -> Through:
+    """What flows through the faces between cells; arguments as in `flow_balance`."""
     mass, ease = problem.flow.mass_and_ease(oil, gap)
     x, (width, spacing) = problem.bodies.x, _widths(problem)
     ahead = (0.5 * (x[1:] + x[:-1]) < 0.0)[:, None]
@@ -167,7 +167,7 @@ def work(problem: PatchProblem, oil: Field, gap: Field) -> Work:
     film that begins and ends without pressure, twice the speeds times these are the heat of the flow under
     pressure, as in a line, less what the flow as a whole does as it expands.
     """
-    flows = through(problem, oil, gap)
+    flows = face_flows(problem, oil, gap)
     width, _ = _widths(problem)
     rise, rise_beside = jnp.diff(oil, axis=1), jnp.diff(_walled(oil), axis=0)
     warmth = problem.flow.temperature_rise
@@ -188,7 +188,7 @@ def heat_beside(problem: PatchProblem, oil: Field, gap: Field) -> Array:
     Half of what a face makes belongs to each of the rows beside it, all that an end makes to its row.
     """
     rise = jnp.diff(_walled(oil), axis=0)
-    heat = through(problem, oil, gap).sides * rise**2 * _volume_beside(problem, oil)
+    heat = face_flows(problem, oil, gap).sides * rise**2 * _volume_beside(problem, oil)
     inner = heat.at[0].multiply(2.0).at[-1].multiply(2.0)
     return 0.5 * (inner[1:] + inner[:-1]) / jnp.asarray(problem.bodies.areas)[:, None]
 
@@ -248,10 +248,13 @@ def stencil(
 
     Cells that no balance knows together are moved together: sixteen directions find all.
 
-    Source: Reynolds (1886), see `balance`; derivatives by automatic differentiation.
+    Source: Reynolds (1886), see `flow_balance`; derivatives by automatic differentiation.
     """
     gain, by, diagonal = jax.linearize(
-        lambda pressure, height: balance(problem, pressure, height, rate), oil, gap, has_aux=True
+        lambda pressure, height: flow_balance(problem, pressure, height, rate),
+        oil,
+        gap,
+        has_aux=True,
     )
     still = jnp.zeros_like(oil)
     moved = _colours(*oil.shape)

@@ -17,7 +17,7 @@ from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.texture import Texture
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.fluid import Fluid
 
 __all__ = ["PatchContact", "elliptic_contact", "finite_line"]
@@ -134,19 +134,19 @@ def finite_line(
     Raises:
         InputError: arrays without places, or of another shape.
     """
-    at = as_array(jnp.zeros(1) if places is None else places)
+    at = float64_array(jnp.zeros(1) if places is None else places)
     along_line = {"radius": radius, "relief": relief, "speed_a": speed_a, "speed_b": speed_b}
     return PatchContact(
-        load=as_array(load),
-        modulus=as_array(modulus),
+        load=float64_array(load),
+        modulus=float64_array(modulus),
         places=at,
         **{name: _at(at, name, value) for name, value in along_line.items()},
-        bend=as_array(0.0),
-        length=as_array(length),
-        across_a=as_array(0.0),
-        across_b=as_array(0.0),
-        approach=as_array(approach),
-        inlet=as_array(inlet),
+        bend=float64_array(0.0),
+        length=float64_array(length),
+        across_a=float64_array(0.0),
+        across_b=float64_array(0.0),
+        approach=float64_array(approach),
+        inlet=float64_array(inlet),
         fluid=fluid,
         texture=texture,
         profile=profile,
@@ -192,19 +192,19 @@ def elliptic_contact(
     """
     unit = jnp.ones(1)
     return PatchContact(
-        load=as_array(load),
-        modulus=as_array(modulus),
+        load=float64_array(load),
+        modulus=float64_array(modulus),
         places=jnp.zeros(1),
-        radius=as_array(radius) * unit,
+        radius=float64_array(radius) * unit,
         relief=0.0 * unit,
-        speed_a=as_array(speed_a) * unit,
-        speed_b=as_array(speed_b) * unit,
-        bend=1.0 / as_array(transverse_radius),
+        speed_a=float64_array(speed_a) * unit,
+        speed_b=float64_array(speed_b) * unit,
+        bend=1.0 / float64_array(transverse_radius),
         length=None,
-        across_a=as_array(across[0]),
-        across_b=as_array(across[1]),
-        approach=as_array(approach),
-        inlet=as_array(inlet),
+        across_a=float64_array(across[0]),
+        across_b=float64_array(across[1]),
+        approach=float64_array(approach),
+        inlet=float64_array(inlet),
         fluid=fluid,
         texture=texture,
         profile=(),
@@ -223,7 +223,7 @@ def _maps(heights: Heights) -> tuple[HeightMap, ...]:
 
 def _at(places: Array, name: str, value: ArrayLike) -> Array:
     """A value at every place."""
-    quantity = as_array(value)
+    quantity = float64_array(value)
     if quantity.ndim and quantity.shape != places.shape:
         raise InputError(
             f"{name.replace('_', ' ')} has the shape {quantity.shape}, and places along the line have "

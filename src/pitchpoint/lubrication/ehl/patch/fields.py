@@ -12,11 +12,15 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.balance import work
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures, heated, temperatures
+from pitchpoint.lubrication.ehl.patch.heat import (
+    PatchTemperatures,
+    contact_heat,
+    patch_temperatures,
+)
 from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem
 from pitchpoint.lubrication.ehl.reynolds import Flow
-from pitchpoint.lubrication.ehl.strips import warmer
-from pitchpoint.lubrication.ehl.work import filled, shear_stress
+from pitchpoint.lubrication.ehl.strips import warmer_flow
+from pitchpoint.lubrication.ehl.work import fractional_film_content, shear_stress
 
 __all__ = [
     "END_DISTANCES",
@@ -266,7 +270,7 @@ def _filled(flow: Flow, oil: Array, room: Array) -> Array:
 
     def of_row(row: tuple[Array, Array, Array]) -> Array:
         oil_row, room_row, warmth = row
-        return filled(warmer(flow, warmth), oil_row, room_row)
+        return fractional_film_content(warmer_flow(flow, warmth), oil_row, room_row)
 
     rows = oil, room, jnp.broadcast_to(rise, rise.shape or oil.shape[:1])
     filling: Array = jax.vmap(of_row)(rows)
@@ -276,10 +280,10 @@ def _filled(flow: Flow, oil: Array, room: Array) -> Array:
 def _heat(
     contact: PatchContact, problem: PatchProblem, pressure: Array, level: Array, layout: Layout
 ) -> PatchTemperatures | None:
-    heats = heated(contact)
+    heats = contact_heat(contact)
     if heats is None:
         return None
-    return temperatures(heats, problem, pressure, level, jnp.asarray(layout.half_width))
+    return patch_temperatures(heats, problem, pressure, level, jnp.asarray(layout.half_width))
 
 
 def _apart(

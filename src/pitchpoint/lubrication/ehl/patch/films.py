@@ -35,14 +35,18 @@ from pitchpoint.lubrication.ehl.patch.heat import (
     TEMPERATURES,
     PatchTemperatures,
     check_heat,
-    defect,
-    heated,
+    contact_heat,
+    patch_heat_defect,
     rests_somewhere,
-    warmed,
+    warmed_patch,
 )
 from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem, leaks, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, Progress
-from pitchpoint.lubrication.ehl.patch.response import polished, polished_warm, settled
+from pitchpoint.lubrication.ehl.patch.response import (
+    polished_patch,
+    polished_solution,
+    polished_warm,
+)
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps, check_standing, unseen
 from pitchpoint.lubrication.ehl.patch.solve import Earlier, dry_bodies, shown_film, solve
 from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
@@ -60,14 +64,14 @@ __all__ = [
     "PatchFilms",
     "SolvedPatch",
     "Turned",
-    "back",
-    "before",
-    "check",
+    "check_patch_contact",
+    "code_before_solve",
+    "film_as_given",
     "film_near",
-    "oriented",
+    "film_with_doubts",
+    "oriented_contact",
     "solve_patch",
-    "told_film",
-    "turned",
+    "turned_contact",
 ]
 
 NODES: Final = 129
@@ -207,9 +211,9 @@ def solve_patch(
             entrained along its length or in two senses, height maps that move or do not cover it, conduction
             between surfaces that move along both axes.
     """
-    check(contact)
+    check_patch_contact(contact)
     check_standing(contact)
-    lies, laid = turned(contact)
+    lies, laid = turned_contact(contact)
     check_heat(laid)
     films = _solved(laid, lies, (nodes, cells), progress, start, bounded=False)
     if films.ended.code not in LOST:
@@ -231,7 +235,7 @@ def _solved(
     bounded: bool,
 ) -> PatchFilms:
     """Films of a contact as its grid lies; without bounds none starts from films that have them."""
-    code = before(contact)
+    code = code_before_solve(contact)
     alike = start if start is not None and start.layout.bounded <= bounded else None
     layout, problem, state, turns = solve(
         contact, *grid, progress, earlier=_earlier(alike), bounded=bounded
@@ -244,12 +248,14 @@ def _solved(
     if code == Code.SOLVED and ended.reynolds < ENOUGH:
         errors = grid_errors(contact, layout, problem, pressure, end.level, held)
         ended = replace(ended, grid=errors[0], grid_minimum=errors[1])
-    heats = heated(contact)
+    heats = contact_heat(contact)
     if heats is not None:
         off = float(_defect(heats, problem, end.pressure, end.level))
         ended = replace(ended, temperature=off, turns=turns)
-    judged = told_film(contact, layout, problem, pressure, float(end.level), held, response, ended)
-    fields = back(judged.film, lies), judged.ended, layout, pressure, float(end.level)
+    judged = film_with_doubts(
+        contact, layout, problem, pressure, float(end.level), held, response, ended
+    )
+    fields = film_as_given(judged.film, lies), judged.ended, layout, pressure, float(end.level)
     rise = None if heats is None else np.asarray(problem.flow.temperature_rise)
     return PatchFilms(*fields, held, response, lies, judged.warnings, rise)
 
@@ -262,7 +268,7 @@ class Told(NamedTuple):
     warnings: tuple[Doubt, ...]
 
 
-def told_film(
+def film_with_doubts(
     own: PatchContact,
     layout: Layout,
     problem: PatchProblem,
@@ -318,17 +324,17 @@ def film_near(contact: PatchContact, films: PatchFilms) -> PatchFilm:
     """
     if not films.solved:
         raise InputError("films that were not solved have no derivatives", key="films")
-    swapped = oriented(contact, films.turned)
+    swapped = oriented_contact(contact, films.turned)
     rows, nodes = films.pressure.shape
     problem = problem_on(swapped, films.layout, nodes, rows, rows)
-    solution, heats = (array(films.pressure), array(films.level)), heated(swapped)
+    solution, heats = (array(films.pressure), array(films.level)), contact_heat(swapped)
     if heats is None:
-        pressure, level = polished(problem, *solution)
+        pressure, level = polished_patch(problem, *solution)
     else:
-        warm = warmed(problem, array(_rise_of(films)))
+        warm = warmed_patch(problem, array(_rise_of(films)))
         problem, pressure, level = polished_warm(heats, warm, *solution)
     fields = swapped, films.layout, problem, pressure, level, array(films.held), films.response
-    return back(patch_film(*fields), films.turned)
+    return film_as_given(patch_film(*fields), films.turned)
 
 
 def _rise_of(films: PatchFilms) -> NDArray[np.float64]:
@@ -350,23 +356,27 @@ def _earlier(films: PatchFilms | None) -> Earlier | None:
 
 
 # They run once for a solution: it is quicker to compile them quickly.
-_settled, _film, _defect = program(settled), program(patch_film), program(defect)
+_settled, _film, _defect = (
+    program(polished_solution),
+    program(patch_film),
+    program(patch_heat_defect),
+)
 
 
 # ---- how a contact lies
 
 
-def turned(contact: PatchContact) -> tuple[Turned, PatchContact]:
+def turned_contact(contact: PatchContact) -> tuple[Turned, PatchContact]:
     """The contact with its stronger entrainment along positive x, and how it was turned for that."""
     along = float(np.mean(np.asarray(contact.speed_a + contact.speed_b)))
     across = float(contact.across_a + contact.across_b)
     swapped = abs(across) > abs(along)
     main, minor = (across, along) if swapped else (along, across)
     lies = Turned(swapped, main < 0.0, minor < 0.0)
-    return lies, oriented(contact, lies)
+    return lies, oriented_contact(contact, lies)
 
 
-def oriented(contact: PatchContact, lies: Turned) -> PatchContact:
+def oriented_contact(contact: PatchContact, lies: Turned) -> PatchContact:
     """The contact as its grid lies."""
     swapped = _swapped(contact) if lies.swapped else contact
     along, across = (-1.0 if backward else 1.0 for backward in (lies.along, lies.across))
@@ -397,7 +407,7 @@ def _swapped(contact: PatchContact) -> PatchContact:
     )
 
 
-def back(film: PatchFilm, lies: Turned) -> PatchFilm:
+def film_as_given(film: PatchFilm, lies: Turned) -> PatchFilm:
     """The film as the contact was given."""
     rows, nodes = (
         slice(None, None, -1 if backward else None) for backward in (lies.across, lies.along)
@@ -432,7 +442,7 @@ def _heat_back(heat: PatchTemperatures, lies: Turned) -> PatchTemperatures:
 # ---- what is wrong with an input, and what is doubtful about a result
 
 
-def before(contact: PatchContact) -> Code:
+def code_before_solve(contact: PatchContact) -> Code:
     """What can be said of a contact before it is solved."""
     still = not np.any(np.asarray(contact.speed_a + contact.speed_b))
     if still and contact.texture is None and float(contact.approach) <= 0.0:
@@ -440,7 +450,7 @@ def before(contact: PatchContact) -> Code:
     return Code.NO_STEADY_HEAT if rests_somewhere(contact) else Code.SOLVED
 
 
-def check(contact: PatchContact) -> None:
+def check_patch_contact(contact: PatchContact) -> None:
     """InputError for values that no contact has."""
     _check_shapes(contact)
     check_maps(contact)

@@ -13,7 +13,7 @@ from pitchpoint.doubts import Doubt
 from pitchpoint.lubrication.ehl.doubts import of_grid
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST, Layout, PatchProblem, problem_on
-from pitchpoint.lubrication.ehl.patch.newton import CAREFUL, ENOUGH, iterated
+from pitchpoint.lubrication.ehl.patch.newton import CAREFUL, ENOUGH, newton_on_patch
 from pitchpoint.lubrication.ehl.patch.solve import (
     WARM_TIME,
     Earlier,
@@ -79,7 +79,7 @@ def grid_errors(
     half = as_warm(near, layout, problem_on(contact, layout, nodes // 2 + 1, cells // 2, cells))
     dry = np.asarray(dry_under(half).pressure)
     begin, level = warm_start(near, layout, half, dry)
-    state = iterated(half, array(begin), array(level), WARM_TIME, None, CAREFUL)
+    state = newton_on_patch(half, array(begin), array(level), WARM_TIME, None, CAREFUL)
     if not state.residual < ENOUGH:
         return UNKNOWN
     coarse_gap = np.asarray(gap_on(half, state.pressure, state.level))

@@ -22,14 +22,14 @@ from pitchpoint.lubrication.ehl.strips import (
     PassingSurfaces,
     Past,
     Strip,
-    accelerated,
-    balanced,
+    anderson_rise,
     by_heat,
     change_of,
+    line_temperature_rise,
     of_surfaces,
-    passing,
     spread_of,
-    warmer,
+    surface_passages,
+    warmer_flow,
 )
 from pitchpoint.lubrication.flash_temperature import Conductor, peclet_number
 
@@ -39,13 +39,13 @@ __all__ = [
     "HeatStep",
     "PatchTemperatures",
     "check_heat",
-    "defect",
-    "heated",
+    "contact_heat",
     "next_turn",
+    "patch_heat_defect",
+    "patch_temperature_rise",
+    "patch_temperatures",
     "rests_somewhere",
-    "risen",
-    "temperatures",
-    "warmed",
+    "warmed_patch",
 ]
 
 Field = Float[Arrays, "y x"]
@@ -113,7 +113,7 @@ class ContactHeat(NamedTuple):
         return speed_a, speed_b
 
 
-def heated(contact: PatchContact) -> ContactHeat | None:
+def contact_heat(contact: PatchContact) -> ContactHeat | None:
     """What decides about the heat of a contact, entrained along x; None of an isothermal one."""
     if contact.conduction is None:
         return None
@@ -137,9 +137,11 @@ def rests_somewhere(contact: PatchContact) -> bool:
     return contact.conduction is not None and bool(np.any(stands))
 
 
-def warmed(problem: PatchProblem, rise: Field) -> PatchProblem:
+def warmed_patch(problem: PatchProblem, rise: Field) -> PatchProblem:
     """The contact with a film that is so much warmer than its inlet, shape (y, x) [K]."""
-    warm: PatchProblem = eqx.tree_at(lambda tree: tree.flow, problem, warmer(problem.flow, rise))
+    warm: PatchProblem = eqx.tree_at(
+        lambda tree: tree.flow, problem, warmer_flow(problem.flow, rise)
+    )
     return warm
 
 
@@ -164,7 +166,7 @@ class _Rows(NamedTuple):
 
     def strip(self, row: _Row) -> tuple[Flow, Strip]:
         """Flow and heat in one row."""
-        flow = warmer(self.flow, row.rise)
+        flow = warmer_flow(self.flow, row.rise)
         spread = spread_of(
             self.conduction, row.speeds, self.length, row.room * flow.height, self.passes
         )
@@ -199,7 +201,7 @@ def _rows(
     at = NodeRow(jnp.full(nodes, spacing), jnp.full(nodes - 1, spacing), ahead)
     power = flow.pressure * flow.height * problem.speed
     beside = heat_beside(problem, oil, gap) * power / length
-    shared = flow, heats.conduction, passing(x, edges), at, length, power
+    shared = flow, heats.conduction, surface_passages(x, edges), at, length, power
     speeds = heats.speeds(jnp.asarray(bodies.y) * length)
     per_row = flow.temperature_rise, oil, gap, flow.room(gap), asperities, beside, speeds
     return _Rows(*shared), _Row(*per_row)
@@ -242,31 +244,35 @@ def next_turn(
     shared, rows = _rows(heats, problem, pressure, level)
 
     def settled(row: _Row) -> Array:
-        return balanced(*shared.strip(row), shared.at)
+        return line_temperature_rise(*shared.strip(row), shared.at)
 
     rise = jax.lax.map(settled, rows)
     begun = problem.flow.temperature_rise
     change = change_of(begun, rise)
     near = (change < NEAR) & (before < NEAR)
-    quicker, past = accelerated(past, jnp.ravel(begun), jnp.ravel(rise), near)
+    quicker, past = anderson_rise(past, jnp.ravel(begun), jnp.ravel(rise), near)
     begin = jnp.where(near, quicker.reshape(rise.shape), rise)
     return HeatStep(rise, begin, change, past)
 
 
-def risen(heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array) -> Array:
+def patch_temperature_rise(
+    heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array
+) -> Array:
     """Rise of the film that its heat makes, shape (y, x) [K]."""
     shared, rows = _rows(heats, problem, pressure, level)
     rise: Array = jax.lax.map(lambda row: by_heat(*shared.strip(row), shared.at)[0], rows)
     return rise
 
 
-def defect(heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array) -> Array:
+def patch_heat_defect(
+    heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array
+) -> Array:
     """Rise of the film against that by its heat, over the largest rise."""
-    rise = risen(heats, problem, pressure, level)
+    rise = patch_temperature_rise(heats, problem, pressure, level)
     return change_of(problem.flow.temperature_rise, rise)
 
 
-def temperatures(
+def patch_temperatures(
     heats: ContactHeat, problem: PatchProblem, pressure: Array, level: Array, half_width: Array
 ) -> PatchTemperatures:
     """Heat and temperatures over the patch of a contact.

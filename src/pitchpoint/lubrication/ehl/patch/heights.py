@@ -9,7 +9,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
-from pitchpoint.materials._leaves import as_array
+from pitchpoint.materials._leaves import float64_array
 
 __all__ = ["HeightMap", "lowered"]
 
@@ -59,7 +59,7 @@ class HeightMap(eqx.Module):
         Raises:
             InputError: heights of another shape than their places, or of a member that there is not.
         """
-        self.x, self.y, self.heights = as_array(x), as_array(y), as_array(heights)
+        self.x, self.y, self.heights = float64_array(x), float64_array(y), float64_array(heights)
         self.member, self.periodic = member, periodic
         shape = tuple(places.shape[0] if places.ndim == 1 else 0 for places in (self.y, self.x))
         if self.heights.shape != shape or min(shape) < FEWEST:

@@ -32,7 +32,7 @@ __all__ = [
     "Ends",
     "Layout",
     "PatchProblem",
-    "extents",
+    "dry_extents",
     "ladder",
     "laid_out",
     "leaks",
@@ -224,7 +224,7 @@ def leaks(contact: PatchContact, layout: Layout) -> bool:
     return bool(np.mean(apart > APART * layout.film) > 0.5)
 
 
-def extents(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
+def dry_extents(contact: PatchContact, layout: Layout) -> tuple[Ends, Ends]:
     """From where to where smooth bodies touch without oil along and across, a line in all rows [m]."""
     along = -layout.half_width, layout.half_width
     if contact.length is not None:

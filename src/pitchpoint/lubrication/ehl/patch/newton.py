@@ -10,7 +10,7 @@ from jaxtyping import Array, Bool, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, balance, stencil
+from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, flow_balance, stencil
 from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
 from pitchpoint.programs import fast_program
 
@@ -25,10 +25,10 @@ __all__ = [
     "Progress",
     "Rows",
     "by_rows",
-    "iterated",
-    "linear",
-    "product",
-    "rows",
+    "inverted_rows",
+    "jacobian_product",
+    "linearised",
+    "newton_on_patch",
 ]
 
 Progress = Callable[[int, float], None]
@@ -190,7 +190,7 @@ class _LinearSearch(NamedTuple):
     number: Array
 
 
-def linear(problem: PatchProblem, pressure: Array, level: Array, rate: Array) -> Linear:
+def linearised(problem: PatchProblem, pressure: Array, level: Array, rate: Array) -> Linear:
     """Balances and their derivatives at a pressure.
 
     A cell is full of oil, and balanced, or its oil is without pressure, as in a line. Cells at the first and
@@ -248,7 +248,7 @@ def _times(derivatives: Stencil, field: Array) -> Array:
     return jnp.sum(derivatives.along * along, axis=0) + jnp.sum(derivatives.across * across, axis=0)
 
 
-def product(at: Linear, change: Array) -> Array:
+def jacobian_product(at: Linear, change: Array) -> Array:
     """Change of all balances, the load at last, with that of inner pressures, the level at last."""
     inner = change[:-1].reshape(at.rest.shape)
     pressure = jnp.pad(inner, ((0, 0), (1, 1)))
@@ -259,7 +259,7 @@ def product(at: Linear, change: Array) -> Array:
     return jnp.append(residuals, at.share @ jnp.sum(inner, axis=1))
 
 
-def rows(at: Linear, even: bool = False) -> Rows:
+def inverted_rows(at: Linear, even: bool = False) -> Rows:
     """Rows inverted: what they do to themselves by flow and by deflection.
 
     Args:
@@ -323,7 +323,7 @@ def by_rows(alone: Rows, share: Array, rest: Array) -> Array:
     return jnp.append(change - _with_images(alone.lifted, share) * level, level)
 
 
-def mended(at: Linear, alone: Rows, rest: Array) -> Array:
+def newton_correction(at: Linear, alone: Rows, rest: Array) -> Array:
     """Change of inner pressures, the level at last, that takes a rest away from all balances.
 
     Args:
@@ -352,7 +352,7 @@ def mended(at: Linear, alone: Rows, rest: Array) -> Array:
 def _searched(at: Linear, alone: Rows, search: _LinearSearch) -> _LinearSearch:
     """The best change along one more direction: rows mended alone, less what is known to do nothing new."""
     move = by_rows(alone, at.share, search.left)
-    effect = product(at, move)
+    effect = jacobian_product(at, move)
     for _ in range(2):  # twice is enough for rounding
         projections = search.effects @ effect
         effect, move = effect - projections @ search.effects, move - projections @ search.moves
@@ -397,7 +397,7 @@ class Moved(NamedTuple):
     left: Float[Array, ""]
 
 
-def moved(
+def newton_step(
     at: Linear, pressure: Array, level: Array, change: Array, rate: Array, manner: Manner
 ) -> Moved:
     """A step in one manner or the other.
@@ -446,17 +446,17 @@ def _rest_in_time(at: Linear, pressure: Array, gap: Array, mass: Array, rate: Ar
     """What is left of all balances at another pressure, if the oil was another mass before."""
     problem = at.problem
     oil = pressure - problem.flow.asperity_pressure(gap)
-    gain, _ = balance(problem, oil, gap, jnp.zeros(()))
+    gain, _ = flow_balance(problem, oil, gap, jnp.zeros(()))
     stored = (_mass(problem, pressure, gap) - mass) * jnp.asarray(problem.bodies.areas)[:, None]
     residuals: Array = jnp.minimum((rate * stored[:, 1:-1] - gain) / at.scale, oil[:, 1:-1])
     return residuals
 
 
-_linear, _rows = fast_program(linear), fast_program(rows)
-_mended, _moved = fast_program(mended), fast_program(moved)
+_linear, _rows = fast_program(linearised), fast_program(inverted_rows)
+_mended, _moved = fast_program(newton_correction), fast_program(newton_step)
 
 
-def iterated(
+def newton_on_patch(
     problem: PatchProblem,
     pressure: Any,
     level: Any,

@@ -14,7 +14,12 @@ from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
 from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.films import Turned, check, oriented, turned
+from pitchpoint.lubrication.ehl.patch.films import (
+    Turned,
+    check_patch_contact,
+    oriented_contact,
+    turned_contact,
+)
 from pitchpoint.lubrication.ehl.patch.layout import (
     Layout,
     PatchProblem,
@@ -24,7 +29,7 @@ from pitchpoint.lubrication.ehl.patch.layout import (
 )
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 
-__all__ = ["Plan", "all_lie", "check_times", "passed", "placed"]
+__all__ = ["Plan", "all_lie", "check_times", "placed_contacts", "surface_travel"]
 
 
 def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> None:
@@ -37,7 +42,7 @@ def check_times(contacts: Sequence[PatchContact], times: NDArray[np.float64]) ->
     if not np.all(np.isfinite(times)) or not np.all(np.diff(times) > 0.0):
         raise InputError("the times of a march have to rise", key="times")
     for contact in contacts:
-        check(contact)
+        check_patch_contact(contact)
     if any(_kind(contact) != _kind(contacts[0]) for contact in contacts):
         raise InputError(
             "the contacts of a march are of one kind: the same ends, oil laws, textures and height maps, "
@@ -64,7 +69,7 @@ def _kind(contact: PatchContact) -> tuple[Any, ...]:
 
 def all_lie(contacts: Sequence[PatchContact]) -> Turned:
     """How the grid of all contacts lies."""
-    orientations = [turned(contact)[0] for contact in contacts if _moves(contact)]
+    orientations = [turned_contact(contact)[0] for contact in contacts if _moves(contact)]
     lies = orientations[0] if orientations else Turned()
     if any(orientation != lies for orientation in orientations):
         raise InputError(
@@ -102,8 +107,8 @@ class Plan:
         layout: Layout | None = None,
     ) -> None:
         self.times, self.lies, self.grid = times, lies, (nodes, cells)
-        self.contacts = [oriented(contact, lies) for contact in contacts]
-        self.passed = passed(self.contacts, times)
+        self.contacts = [oriented_contact(contact, lies) for contact in contacts]
+        self.passed = surface_travel(self.contacts, times)
         self.own = [laid_out(contact, cells) for contact in self.contacts]
         self.layout = layout or _common(self.own)
 
@@ -141,11 +146,13 @@ class Plan:
         return problem_on(self.contact(time), self.layout, nodes, cells, cells)
 
 
-def placed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> list[PatchContact]:
+def placed_contacts(
+    contacts: Sequence[PatchContact], times: NDArray[np.float64]
+) -> list[PatchContact]:
     """Contacts of a march with their height maps where their surfaces have taken them until then."""
     if not contacts[0].heights:
         return list(contacts)
-    ways = passed(contacts, times)
+    ways = surface_travel(contacts, times)
     return [_moved(contact, distances) for contact, distances in zip(contacts, ways, strict=True)]
 
 
@@ -170,7 +177,9 @@ def _speeds(contact: PatchContact) -> NDArray[np.float64]:
     return np.array([along, [float(contact.across_a), float(contact.across_b)]]).T
 
 
-def passed(contacts: Sequence[PatchContact], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def surface_travel(
+    contacts: Sequence[PatchContact], times: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Ways of both surfaces along and across at every time, shape (time, 2, 2) [m]."""
     speeds = np.stack([_speeds(contact) for contact in contacts])
     ways = 0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)[:, None, None]

@@ -9,13 +9,20 @@ from jax.scipy.sparse.linalg import gmres
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.lubrication.ehl.patch.balance import balance
-from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, risen, warmed
+from pitchpoint.lubrication.ehl.patch.balance import flow_balance
+from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, patch_temperature_rise, warmed_patch
 from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
-from pitchpoint.lubrication.ehl.patch.newton import Linear, Rows, by_rows, linear, product, rows
+from pitchpoint.lubrication.ehl.patch.newton import (
+    Linear,
+    Rows,
+    by_rows,
+    inverted_rows,
+    jacobian_product,
+    linearised,
+)
 from pitchpoint.lubrication.ehl.strips import LEAST_RISE
 
-__all__ = ["PolishedSolution", "polished", "polished_warm", "settled"]
+__all__ = ["PolishedSolution", "polished_patch", "polished_solution", "polished_warm"]
 
 Map = Callable[[Array], Array]
 
@@ -29,7 +36,7 @@ RESTARTS: Final = 10
 """Times that these are looked for."""
 
 
-def polished(problem: PatchProblem, pressure: Array, level: Array) -> tuple[Array, Array]:
+def polished_patch(problem: PatchProblem, pressure: Array, level: Array) -> tuple[Array, Array]:
     """Pressure and level of a solution, with their derivatives to all that the problem is made of.
 
     A last step from the solution carries them (implicit function theorem), with the cells that are full and
@@ -43,8 +50,8 @@ def polished(problem: PatchProblem, pressure: Array, level: Array) -> tuple[Arra
     From the implicit function theorem at the solution.
     """
     frozen, pressure, level = jax.lax.stop_gradient((problem, pressure, level))
-    at = linear(frozen, pressure, level, jnp.zeros(()))
-    change = answered(at, rows(at), -_rest(problem, at, pressure, level))
+    at = linearised(frozen, pressure, level, jnp.zeros(()))
+    change = inner_response(at, inverted_rows(at), -_rest(problem, at, pressure, level))
     inner = change[:-1].reshape(at.rest.shape)
     return pressure.at[:, 1:-1].add(inner), level + change[-1]
 
@@ -54,7 +61,7 @@ def polished_warm(
 ) -> tuple[PatchProblem, Array, Array]:
     """Contact as warm as it is, pressure and level, with their derivatives to all that it is made of.
 
-    As `polished`, with pressure, level and temperature together.
+    As `polished_patch`, with pressure, level and temperature together.
 
     Args:
         heats: what decides about the heat.
@@ -68,8 +75,8 @@ def polished_warm(
     frozen, still, pressure, level, rise = jax.lax.stop_gradient(
         (problem, heats, pressure, level, rise)
     )
-    at = linear(frozen, pressure, level, jnp.zeros(()))
-    alone, size, unit = rows(at), at.rest.size + 1, jnp.max(rise) + LEAST_RISE
+    at = linearised(frozen, pressure, level, jnp.zeros(()))
+    alone, size, unit = inverted_rows(at), at.rest.size + 1, jnp.max(rise) + LEAST_RISE
 
     def parts(change: Array) -> tuple[Array, Array, Array]:
         inner = change[: size - 1].reshape(at.rest.shape)
@@ -78,8 +85,8 @@ def polished_warm(
 
     def rest(heats: ContactHeat, problem: PatchProblem, change: Array) -> Array:
         there, risen_to = parts(change)[:2], parts(change)[2]
-        warm = warmed(problem, risen_to)
-        off = (risen_to - risen(heats, warm, *there)) / unit
+        warm = warmed_patch(problem, risen_to)
+        off = (risen_to - patch_temperature_rise(heats, warm, *there)) / unit
         return jnp.append(_rest(warm, at, *there), jnp.ravel(off))
 
     none = jnp.zeros(size + rise.size)
@@ -89,22 +96,22 @@ def polished_warm(
         return jnp.append(by_rows(alone, at.share, right_side[:size]), right_side[size:])
 
     pressure, level, rise = parts(inverted(times, nearly, -rest(heats, problem, none)))
-    return warmed(problem, rise), pressure, level
+    return warmed_patch(problem, rise), pressure, level
 
 
 def _rest(problem: PatchProblem, at: Linear, pressure: Array, level: Array) -> Array:
-    """What is left of all balances, as those of the solution but for the problem, see `linear`."""
+    """What is left of all balances, as those of the solution but for the problem, see `linearised`."""
     gap = problem.gap(pressure, level)
     oil = pressure - problem.flow.asperity_pressure(gap)
-    gain, _ = balance(problem, oil, gap, jnp.zeros(()))
+    gain, _ = flow_balance(problem, oil, gap, jnp.zeros(()))
     residuals = jnp.where(at.full, -gain / at.scale, oil[:, 1:-1])
     return jnp.append(residuals, problem.bodies.load(pressure) / problem.load - 1.0)
 
 
-def answered(at: Linear, alone: Rows, rest: Array) -> Array:
+def inner_response(at: Linear, alone: Rows, rest: Array) -> Array:
     """Change of inner pressures, the level at last, for changes of all balances; can be differentiated."""
     return inverted(
-        lambda change: product(at, change),
+        lambda change: jacobian_product(at, change),
         lambda right_side: by_rows(alone, at.share, right_side),
         rest,
     )
@@ -165,7 +172,7 @@ class PolishedSolution(NamedTuple):
     by_approach: Float[Array, ""]
 
 
-def settled(problem: PatchProblem, pressure: Array, level: Array) -> PolishedSolution:
+def polished_solution(problem: PatchProblem, pressure: Array, level: Array) -> PolishedSolution:
     """A last step from a solution, whose linear solve leaves nothing, and what the level answers there.
 
     Args:
@@ -173,12 +180,12 @@ def settled(problem: PatchProblem, pressure: Array, level: Array) -> PolishedSol
         pressure: solution, shape (y, x).
         level: of the surfaces.
     """
-    pressure, level = polished(problem, pressure, level)
-    end = linear(problem, pressure, level, jnp.zeros(()))
-    alone = rows(end)
+    pressure, level = polished_patch(problem, pressure, level)
+    end = linearised(problem, pressure, level, jnp.zeros(()))
+    alone = inverted_rows(end)
     load_step = jnp.zeros(end.rest.size + 1).at[-1].set(1.0)
     closing = _closing(problem, end, pressure, level)
-    by_load, by_approach = (answered(end, alone, push)[-1] for push in (load_step, closing))
+    by_load, by_approach = (inner_response(end, alone, push)[-1] for push in (load_step, closing))
     largest = jnp.max(jnp.abs(end.rest))
     return PolishedSolution(pressure, level, largest, end.load, by_load, by_approach)
 

@@ -16,7 +16,7 @@ from pitchpoint.lubrication.ehl.patch.layout import (
     FEWEST,
     Ends,
     Layout,
-    extents,
+    dry_extents,
     lowered_on,
     problem_on,
     without_oil,
@@ -116,7 +116,7 @@ def check_maps_on(contact: PatchContact, layout: Layout, cells: int) -> None:
         return
     for height_map in contact.heights:
         for axis, places, ends in zip(
-            "xy", (height_map.x, height_map.y), extents(contact, layout), strict=True
+            "xy", (height_map.x, height_map.y), dry_extents(contact, layout), strict=True
         ):
             check_cover(height_map, axis, np.asarray(places), ends)
     _check_reach(contact, layout, cells)
@@ -176,7 +176,7 @@ def _range(contact: PatchContact, layout: Layout, cells: int) -> float:
 
 def unseen(contact: PatchContact, layout: Layout, nodes: int, cells: int) -> Iterator[Doubt]:
     """Sentences on what the grid does not show of maps, and on contacts that are summits alone."""
-    patch = extents(contact, layout)
+    patch = dry_extents(contact, layout)
     for height_map in contact.heights:
         seen = _seen(height_map, layout, patch, (nodes, cells), contact.ends)
         rq = _rq(height_map, patch)

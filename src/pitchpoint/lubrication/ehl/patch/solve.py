@@ -15,7 +15,7 @@ from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, heated, next_turn, warmed
+from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, contact_heat, next_turn, warmed_patch
 from pitchpoint.lubrication.ehl.patch.layout import (
     Layout,
     PatchProblem,
@@ -33,7 +33,7 @@ from pitchpoint.lubrication.ehl.patch.newton import (
     Manner,
     PatchIterate,
     Progress,
-    iterated,
+    newton_on_patch,
 )
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.lubrication.ehl.strips import MOST_TURNS, STEADY, cold_past
@@ -50,7 +50,7 @@ __all__ = [
     "gap_on",
     "shown_film",
     "solve",
-    "touches",
+    "touches_dry",
 ]
 
 FINER_TIME: Final = 2.0
@@ -156,7 +156,7 @@ def dry_start(problem: PatchProblem, bed: float = BED) -> tuple[NDArray[np.float
     return pressure, float(problem.film) - _mean_gap(problem, pressure, array(pressure), 0.0)
 
 
-def touches(problem: PatchProblem, state: PatchIterate) -> bool:
+def touches_dry(problem: PatchProblem, state: PatchIterate) -> bool:
     """Whether smooth surfaces carry load without oil, as where a grid is too coarse for their film."""
     if float(problem.flow.texture.rq) > 0.0:
         return False
@@ -256,7 +256,7 @@ def as_warm(earlier: Earlier, layout: Layout, problem: PatchProblem) -> PatchPro
     """The contact as warm as one that is alike, where both have temperatures."""
     if earlier.rise is None or not problem.flow.temperature_rise.ndim:
         return problem
-    return warmed(problem, array(_as_laid(earlier, layout, problem, earlier.rise)))
+    return warmed_patch(problem, array(_as_laid(earlier, layout, problem, earlier.rise)))
 
 
 def _as_laid(
@@ -278,7 +278,7 @@ def as_warm_as(coarse: PatchProblem, fine: PatchProblem) -> PatchProblem:
         return fine
     along = _between(np.asarray(coarse.bodies.x), np.asarray(fine.bodies.x))
     across = _between(np.asarray(coarse.bodies.y), np.asarray(fine.bodies.y))
-    return warmed(fine, array(across @ rise @ along.T))
+    return warmed_patch(fine, array(across @ rise @ along.T))
 
 
 def _between(coarse: NDArray[np.float64], fine: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -393,8 +393,8 @@ class _Solver:
             turn = _next_turn(heats, problem, state.pressure, state.level, past, change)
             past, change, self.turns = turn.past, turn.change, self.turns + 1
             if float(change) < steady:
-                return solution._replace(problem=warmed(problem, turn.rise), state=state)
-            problem = warmed(problem, turn.begin)
+                return solution._replace(problem=warmed_patch(problem, turn.rise), state=state)
+            problem = warmed_patch(problem, turn.begin)
             enough = max(FINEST, EXACT * min(float(change), 1.0))
             state = self.after_turn(problem, state, float(change), enough)
             if not state.residual < ENOUGH:
@@ -427,7 +427,7 @@ class _Solver:
     def held(self, solution: Found) -> Found | None:
         """Solution whose tips hold their film, where smooth surfaces touch in that which was found."""
         problem, state = solution.problem, solution.state
-        if not touches(problem, state):
+        if not touches_dry(problem, state):
             return None
         limited: PatchProblem = eqx.tree_at(lambda tree: tree.steep, problem, array(1.0))
         self.left, start = MOST_ON_GRID, (state.pressure, state.level)
@@ -480,7 +480,7 @@ class _Solver:
     ) -> PatchIterate:
         pressure, level = map(array, start)
         most = min(MOST, self.left)
-        state = iterated(problem, pressure, level, time, self.told, manner, most, enough)
+        state = newton_on_patch(problem, pressure, level, time, self.told, manner, most, enough)
         self.steps += state.steps
         self.left -= state.steps
         self.last = state._replace(steps=self.steps)
@@ -524,7 +524,7 @@ def solve(
     grids, fixed = ladder(nodes, cells), layout is not None
     layout = laid_out(contact, cells)._replace(bounded=bounded) if layout is None else layout
     check_maps_on(contact, layout, cells)
-    solver, heats = _Solver(told), heated(contact)
+    solver, heats = _Solver(told), contact_heat(contact)
     if earlier is not None:
         problem = problem_on(contact, layout, nodes, cells, cells)
         solution = solver.from_earlier(as_warm(earlier, layout, problem), earlier, layout)

@@ -21,12 +21,12 @@ from pitchpoint.lubrication.ehl.patch.films import (
     NODES,
     PatchEnded,
     Turned,
-    back,
-    before,
-    told_film,
+    code_before_solve,
+    film_as_given,
+    film_with_doubts,
 )
 from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem
-from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, PatchIterate, Progress, iterated
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, PatchIterate, Progress, newton_on_patch
 from pitchpoint.lubrication.ehl.patch.plan import Plan, all_lie, check_times
 from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
 from pitchpoint.programs import program
@@ -204,7 +204,7 @@ def steady_beside(
     plan = _plan_on(course, [contact], np.zeros(1))
     laid, problem = plan.contact(0.0), plan.problem(0.0)
     guess = array(course.pressure), array(course.level)
-    state = iterated(problem, *guess, TIED, progress, most=FEW)
+    state = newton_on_patch(problem, *guess, TIED, progress, most=FEW)
     if not state.residual < ENOUGH:
         _, problem, state, _ = solve(laid, *plan.grid, progress, plan.layout_of(0))
     return _moment(plan, 0, problem, course, state, (0, state.steps))
@@ -296,9 +296,9 @@ class _Stepper:
         """The film at a time, from the one before."""
         problem = _since(self.plan.problem(time), course, time)
         guess = array(course.pressure), array(course.level)
-        state = iterated(problem, *guess, np.inf, self.told, most=FEW)
+        state = newton_on_patch(problem, *guess, np.inf, self.told, most=FEW)
         if not state.residual < ENOUGH:
-            state = iterated(problem, *guess, TIED, self.told)
+            state = newton_on_patch(problem, *guess, TIED, self.told)
         mass = np.asarray(_mass(problem, state.pressure, state.level))
         return _Step(problem, state, mass)
 
@@ -405,13 +405,13 @@ def _moment(
 ) -> PatchMoment:
     """Film at one of the times."""
     contact, layout = plan.contact(plan.times[number]), plan.layout_of(number)
-    code = before(plan.contacts[0]) if number == 0 else Code.SOLVED
+    code = code_before_solve(plan.contacts[0]) if number == 0 else Code.SOLVED
     ended = PatchEnded(code, float(state.residual), abs(float(state.load)), steps[1])
     dry, unknown = dry_under(problem), array(np.nan)
     solution = np.asarray(state.pressure), float(state.level), np.asarray(dry.pressure)
     response = ElasticResponse(array(dry.approach), unknown, unknown, unknown)
-    judged = told_film(contact, layout, problem, *solution, response, ended)
-    film: Any = jax.tree.map(np.asarray, back(judged.film, plan.lies))
+    judged = film_with_doubts(contact, layout, problem, *solution, response, ended)
+    film: Any = jax.tree.map(np.asarray, film_as_given(judged.film, plan.lies))
     warnings = (*judged.warnings, *_few(layout, plan.grid[0]))
     time = float(plan.times[number])
     return PatchMoment(time, film, judged.ended, steps[0], course, warnings)
