@@ -286,3 +286,20 @@ def test_the_screen_has_the_percentiles_that_it_names_and_what_does_not_follow()
     assert told == ["101 designs", "Safeties stay.", "every design: x"]
     ends = figures_of_many(found.assign_attrs(tolerances=""), Path("x"))[1]
     assert ends == []  # without tolerances the backlash is no main figure
+
+
+@pytest.mark.whole
+def test_helix_slopes_that_make_the_misalignment_do_not_count_twice() -> None:
+    def most(changes: dict[str, object]) -> list[float]:
+        with double_precision():
+            case = PAIR.set({"gears.deviations.iso_class": 6, **changes})
+            deviations = case.held[0].built({}).meshes[0].deviations
+        return [float(np.abs(of_gear[0].lead_slope).max()) for of_gear in deviations]
+
+    misaligned, shared = (
+        {"gears.misalignment": "5 um"},
+        {"gears.deviations.share_of_tolerance": 0.5},
+    )
+    assert most(misaligned | shared) == [0.0, 0.0]
+    assert most(shared) == pytest.approx([0.5 * limit for limit in most(misaligned)], rel=1e-12)
+    assert min(most(misaligned)) > 1e-6

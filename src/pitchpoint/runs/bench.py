@@ -232,10 +232,13 @@ def bench(
     named = _named(listed, names)
     watching = progress or Progress()
     watching.expect(len(named))
+    opened = {name: variant.built({}) for name, variant in named.items()}
+    for name, built in opened.items():
+        _demand_reducer(name, built)  # before any is computed
     drives = []
     for name, variant in named.items():
         watching.part(name, "bench", False)
-        drives.append(_benched(name, variant))
+        drives.append(_benched(name, variant, opened[name]))
     return Bench(tuple(drives))
 
 
@@ -309,9 +312,7 @@ def _number(value: Any, why: str = "friction holds the drive") -> float:
     return float(value)
 
 
-def _benched(name: str, variant: Variant) -> BenchedDrive:
-    built = variant.built({})
-    _demand_reducer(name, built)
+def _benched(name: str, variant: Variant, built: Ready) -> BenchedDrive:
     parts, failed = _computed(variant, PARTS)
     remarks = [*ranked_doubts([*unlikely(built, parts)])["implausible"]]
     if "torsion" not in parts and "torsion" not in failed:
