@@ -531,10 +531,7 @@ OF_SET = {
     "materials": {name: {"young": "206 GPa", "poisson": 0.3} for name in ("sun", "planet", "ring")},
 }
 SECOND = {"teeth": [34, 88], "face_width": "10 mm", "module": "1 mm", "tip_alteration": [0, 0]}
-THREE_K = {
-    **PLANETARY,
-    "gears": {**PLANETARY["gears"], "teeth": [18, 36, 90], "second": SECOND},
-}
+THREE_K = {**PLANETARY, "gears": {**PLANETARY["gears"], "teeth": [18, 36, 90], "second": SECOND}}
 TRAIN = {
     "stages": {
         "1": {

@@ -2,15 +2,21 @@
 
 import html
 import re
+import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import sound
 import xarray as xr
 from many_designs import KEYS, RANGES, quick_study
 from pages import unpacked
 
+import pitchpoint as pp
+from pitchpoint import cli
+from pitchpoint.runs.run import run_case
 from pitchpoint.sizing.front import non_dominated
 from pitchpoint.views import study_report
 from pitchpoint.views.study_report import render_study, spread_evenly
@@ -187,3 +193,36 @@ def test_a_folder_with_a_space_is_quoted(study: xr.Dataset) -> None:
 
 def test_a_page_of_python_says_what_to_set(study: xr.Dataset) -> None:
     assert content_of(render_study(study))["opening"]["call"] == "case.set"
+
+
+@pytest.mark.whole
+@pytest.mark.parametrize(
+    "drawn", [("--over", "torque=20 N m:45 N m", "--how", "sobol"), ("--tolerances", "normal")]
+)
+def test_a_design_of_the_page_is_the_case_beside_it_with_its_inputs_set(
+    drawn: tuple[str, ...], tmp_path: Path
+) -> None:
+    """What the command of the page computes, of a study with settings: figures are those drawn."""
+    limits = {"thickness_field": ["cd25", "d26"], "centre_distance_field": "js7"}
+    pair = pp.Case(tomllib.loads(sound.PAIR)).set({"gears.inspection": limits})
+    pair.to_toml(tmp_path / "pair.toml")
+    out = tmp_path / "out"
+    given = (*drawn, "-n", "8", "-o", str(out), "--set", "operation.speed=700 rpm")
+    with pytest.MonkeyPatch.context() as patched, pytest.raises(SystemExit) as ended:
+        patched.setattr(sys, "argv", ["pitchpoint", "study", str(tmp_path / "pair.toml"), *given])
+        cli.main()
+    assert not ended.value.code
+    content = unpacked((out / "report.html").read_text("utf-8"), "content")
+    columns = {column["name"]: column for column in content["columns"]}
+    inputs = {
+        name: f"{column['values'][0][3]} {column['written']}"
+        for name, column in columns.items()
+        if column["input"]
+    }
+    program, command, path = content["opening"]["command"].split()
+    assert (program, command, path) == ("pitchpoint", "run", str(out / "case.toml"))
+    parts = run_case(path, settings=inputs, analyses=("operation",))["default"].parts["operation"]
+    loss, percent = (columns[name]["values"][0][3] for name in ("mean_loss", "mean_efficiency"))
+    assert parts["mean_loss"].values.ravel()[0] == pytest.approx(loss, rel=1e-5)
+    assert 100.0 * parts["mean_efficiency"].values.ravel()[0] == pytest.approx(percent, rel=1e-5)
+    assert Path(path).read_text("utf-8").count("700 rpm") == 1

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from pages import unpacked
 
 import pitchpoint as pp
 from pitchpoint import cli
@@ -26,7 +25,7 @@ from pitchpoint.results.pieces import ALONG, StudyPieces, joined_pieces, summary
 from pitchpoint.runs import workers
 from pitchpoint.runs.described import StudyDescription, piece_elsewhere
 from pitchpoint.runs.layouts import layout_of
-from pitchpoint.runs.run import Progress, run_case
+from pitchpoint.runs.run import Progress
 
 TORQUE, WIDTH = "operation.torque", "gears.face_width"
 PAIR = pp.Case(
@@ -593,35 +592,6 @@ def test_the_screen_has_sobol_indices(
     indices = json.loads(capsys.readouterr().out)["sobol_indices"]["mean_loss"]["xu_2007"]
     assert indices[TORQUE]["total_order"] == pytest.approx(1.0, abs=0.2)
     assert indices[WIDTH]["total_order"] == 0.0
-
-
-@pytest.mark.whole
-@pytest.mark.parametrize(
-    "drawn", [("--over", "torque=20 N m:45 N m", "--how", "sobol"), ("--tolerances", "normal")]
-)
-def test_a_design_of_the_page_is_the_case_beside_it_with_its_inputs_set(
-    drawn: tuple[str, ...], tmp_path: Path
-) -> None:
-    """What the command of the page computes, of a study with settings: figures are those drawn."""
-    limits = {"thickness_field": ["cd25", "d26"], "centre_distance_field": "js7"}
-    PAIR.set({"gears.inspection": limits}).to_toml(tmp_path / "pair.toml")
-    out = tmp_path / "out"
-    given = (*drawn, "-n", "8", "-o", str(out), "--set", "operation.speed=700 rpm")
-    assert _command(str(tmp_path / "pair.toml"), *given) == 0
-    content = unpacked((out / "report.html").read_text("utf-8"), "content")
-    columns = {column["name"]: column for column in content["columns"]}
-    inputs = {
-        name: f"{column['values'][0][3]} {column['written']}"
-        for name, column in columns.items()
-        if column["input"]
-    }
-    program, command, path = content["opening"]["command"].split()
-    assert (program, command, path) == ("pitchpoint", "run", str(out / "case.toml"))
-    parts = run_case(path, settings=inputs, analyses=("operation",))["default"].parts["operation"]
-    loss, percent = (columns[name]["values"][0][3] for name in ("mean_loss", "mean_efficiency"))
-    assert parts["mean_loss"].values.ravel()[0] == pytest.approx(loss, rel=1e-5)
-    assert 100.0 * parts["mean_efficiency"].values.ravel()[0] == pytest.approx(percent, rel=1e-5)
-    assert Path(path).read_text("utf-8").count("700 rpm") == 1
 
 
 def test_a_study_of_python_has_its_page_where_it_is_asked_for(tmp_path: Path, quick: None) -> None:

@@ -283,7 +283,12 @@ def test_the_screen_has_the_percentiles_that_it_names_and_what_does_not_follow()
     found = xr.Dataset(figures, {"law": ["xu_2007"]}, {"reasons": "{}", "tolerances": "uniform"})
     told, rows = figures_of_many(found.assign_attrs(remarks='["Safeties stay."]'), Path("x"))
     assert rows[0] | {"1 %": "1", "median": "50", "99 %": "99"} == rows[0]
-    assert told == ["101 designs", "Safeties stay.", "every design: x"]
+    assert told == [
+        "101 designs",
+        "Safeties stay.",
+        "every design: x",
+        "report: x/report.html",
+    ]
     ends = figures_of_many(found.assign_attrs(tolerances=""), Path("x"))[1]
     assert ends == []  # without tolerances the backlash is no main figure
 

@@ -10,7 +10,6 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, Unasked
 from pitchpoint.analyses.figures import by_law, json_figures
-from pitchpoint.analyses.made_gears import made_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import (
     figures_beside_cycle,
@@ -30,6 +29,7 @@ from pitchpoint.gears.mesh import has
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.registry import code_at
 from pitchpoint.units import si_unit
 
 if TYPE_CHECKING:
@@ -152,11 +152,11 @@ def more_of(points: Sequence[Ready], laws: int, keys: Collection[str]) -> dict[s
         laws: of friction.
         keys: of the case that the points change.
     """
-    made = made_figures(points, laws, keys)
+    made_figures = code_at("pitchpoint.analyses.made_gears:made_figures")
     return {
         **figures_beside_cycle(points),
         **ratings_of(points, laws),
-        **made,
+        **made_figures(points, laws, keys),
         **readings_of(points, laws),
     }
 

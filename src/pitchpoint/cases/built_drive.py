@@ -23,7 +23,6 @@ from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.drive_schema import DriveCase, StageTable
 from pitchpoint.doubts import in_stage
 from pitchpoint.drive.kinematics import HOUSING, Ends
-from pitchpoint.drive.torques import TrainTorques, train_torques
 from pitchpoint.efficiency.drag import Drag, held_by
 from pitchpoint.efficiency.drive import Drive
 from pitchpoint.efficiency.drive_summary import drive_figures
@@ -31,6 +30,7 @@ from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.registry import code_at
 from pitchpoint.results.variable import End
 from pitchpoint.strength.strength_table import MESH_LOAD
 
@@ -610,9 +610,11 @@ class BuiltTrain(BuiltDrive):
     def ideal_torques(self) -> "TrainTorques":
         """Torques of the bodies for a unit at the output, without losses."""
         train = self.design
+        train_torques = code_at("pitchpoint.drive.torques:train_torques")
         links = [mesh.link for mesh in train.meshes]
         ends = Ends({train.turned: float(train.rates[train.turned])}, train.held, train.loaded)
-        return train_torques(links, ends, 1.0, [1.0] * len(links))
+        torques: TrainTorques = train_torques(links, ends, 1.0, [1.0] * len(links))
+        return torques
 
     @cached_property
     def pin_step(self) -> float:

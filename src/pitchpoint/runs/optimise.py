@@ -174,7 +174,7 @@ def optimise(
         >>> pp.optimise("tian2024", {"gears.profile_shift": "0.6:0"}, minimise="mean_loss")
         Traceback (most recent call last):
             ...
-        pitchpoint.errors.InputError: gears.profile_shift: from 0.6 to 0 is no range; write "0:0.6"
+        pitchpoint.errors.InputError: tian2024: gears.profile_shift: from 0.6 to 0 is no range; write "0:0.6"
     """
     demand_arguments(variant=variant, friction=friction, folder=folder, overwrite=overwrite)
     held = as_case(case)
