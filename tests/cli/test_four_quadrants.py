@@ -12,11 +12,11 @@ from mapped_pair import MOVING, PAIR, TOLERANCE, locking_drive, moving_drive, va
 
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.figures import HOLDING_BANDS, held_at_operation, standstill_figures
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.four_quadrants import loss_beside, loss_of_output, quadrant_axes, table_of
 from pitchpoint.analyses.loss_map import maps
+from pitchpoint.analyses.main_figures import HOLDING_BANDS, held_at_operation, standstill_figures
 from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.efficiency.loss_table import LossTable

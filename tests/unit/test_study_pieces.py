@@ -18,7 +18,7 @@ from pages import unpacked
 
 import pitchpoint as pp
 from pitchpoint import cli
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode
