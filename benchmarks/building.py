@@ -20,7 +20,7 @@ import numpy as np
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, build_cylindrical_pairs
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.designs import Designs
+from pitchpoint.gears.design_groups import Designs
 from pitchpoint.gears.strain_wave.design import build_strain_wave, build_strain_waves
 
 jax.config.update("jax_enable_x64", True)

@@ -13,10 +13,10 @@ from collections.abc import Callable
 import bench
 import numpy as np
 
-from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
-from pitchpoint.duty_cycle.heat import ThermalNetwork
+from pitchpoint.duty_cycle.duty_dataset import Heating, duty_dataset
 from pitchpoint.duty_cycle.history import load_history
 from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.duty_cycle.thermal_network import ThermalNetwork
 from pitchpoint.efficiency.loss_table import LossTable
 
 SIZES = bench.sizes(__doc__, samples=(1_000_000, 20_000), turns=(3, 1), slow=(20_000, 2_000))

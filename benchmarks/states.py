@@ -29,8 +29,8 @@ from pitchpoint._jax import jnp
 from pitchpoint.efficiency.grid import state_grid
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness
 

@@ -26,15 +26,15 @@ import numpy as np
 from pitchpoint._jax import jnp
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import PeriodGrid
+from pitchpoint.dynamics.pair_vibration import Vibrating, excitation, frequency_ratio, system
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.steady_state import steady_state
 from pitchpoint.dynamics.system import System
-from pitchpoint.dynamics.vibration import Vibrating, excitation, frequency_ratio, system
 from pitchpoint.efficiency.quasi_static import Design as Gears
 from pitchpoint.efficiency.quasi_static import Operation
-from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.mesh_bodies import plain_inertia
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.materials import lubricants

@@ -30,11 +30,11 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
-from pitchpoint.gears.designs import select_designs
+from pitchpoint.gears.design_groups import select_designs
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.wear.history import Cells, WearModel, unworn_start, wear_of_turn

@@ -15,7 +15,7 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 import pitchpoint
-from pitchpoint.gears.bodies import drawing
+from pitchpoint.gears.mesh_bodies import drawing
 
 __all__ = ["setup"]
 

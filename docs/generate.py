@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 import pitchpoint
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.document import MARKS, STATUSES
 from pitchpoint.cases.drive_schema import DriveCase, StageTable, TrainTable
 from pitchpoint.cases.loss_sets import SET, SET_TOLD
@@ -18,12 +18,12 @@ from pitchpoint.cases.schema import CaseFile
 from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.input.tables import alternatives, field_quantity, key_sentences, usual_words
 from pitchpoint.materials.material_tables import DriveMaterials
-from pitchpoint.published.registry import PUBLICATIONS
-from pitchpoint.results.strength import EXTREMES, STRENGTH
+from pitchpoint.published.publication_registry import PUBLICATIONS
+from pitchpoint.results.strength_variables import EXTREMES, STRENGTH
 from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.catalogue import entries
-from pitchpoint.sizing.table import TASK_TABLE, Task
+from pitchpoint.sizing.task_table import TASK_TABLE, Task
 
 __all__ = ["keys_pages", "models_page", "pages", "variables_pages", "write"]
 

@@ -14,10 +14,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from pitchpoint import kept
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.study_tables import Study
-from pitchpoint.programs import surroundings
+from pitchpoint.core import kept
+from pitchpoint.core.programs import surroundings
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.run import Outcome, compare_case, open_outcomes, run_case
 

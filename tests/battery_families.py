@@ -18,11 +18,11 @@ from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import build_strain_wave
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.sharing import sharing_applies
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

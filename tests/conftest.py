@@ -35,7 +35,7 @@ from shapes import install  # noqa: E402
 jax.config.update("jax_enable_x64", True)
 install()  # before anything of the package is imported
 
-from pitchpoint import programs  # noqa: E402
+from pitchpoint.core import programs  # noqa: E402
 
 MOST_MAPS = 55_000
 """Memory maps (Linux allows 65,530) beyond which compiled programs are given back after a file."""

@@ -5,13 +5,13 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.status import Code
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
 from pitchpoint.dynamics.grid import PeriodGrid
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.response import Response, response_from_states
 from pitchpoint.dynamics.system import System
-from pitchpoint.status import Code
 
 __all__ = ["harmonic_balance"]
 

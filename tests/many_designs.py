@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import pitchpoint as pp
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 
 __all__ = ["KEYS", "RANGES", "quick_study"]
 

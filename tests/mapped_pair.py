@@ -12,7 +12,7 @@ import xarray as xr
 
 from pitchpoint import cli
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import RUNNING
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant

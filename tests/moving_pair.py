@@ -3,14 +3,14 @@
 import numpy as np
 
 from pitchpoint._jax import array
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.passage import passage
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

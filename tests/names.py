@@ -81,6 +81,17 @@ EXCUSED = {
 }
 """Names of functions that stand more than once, and why."""
 
+EXCUSED_FILES = {
+    "gears/*/family.py": "what every family says of itself, in a folder of its name",
+    "gears/*/mesh.py": "what every mesh is asked, in the folder of its family",
+    "gears/*/table.py": "the table `[gears]` of a case file, in the folder of its family",
+    "published/*/publication.py": "what every publication lists, in a folder of its name",
+    "published/*/printed.py": "the numbers that its publication prints",
+    "published/*/table.py": "the table `[formulas]` of a case file, in the folder of its publication",
+}
+"""Files that are named by what a folder of their kind must have, and why."""
+
+
 SAYS_NOTHING = GENERIC | frozenset(
     [
         "after",
@@ -141,6 +152,20 @@ def repeated_functions() -> set[str]:
     return {name for name, count in public_functions().items() if count > 1}
 
 
+def files_of_stem() -> dict[str, list[str]]:
+    """Files of the package by their stem, without those that are excused."""
+    excused = {path for pattern in EXCUSED_FILES for path in SOURCE.glob(pattern)}
+    files: dict[str, list[str]] = {}
+    for path in sorted({*SOURCE.rglob("*.py")} - excused - {*SOURCE.rglob("__init__.py")}):
+        files.setdefault(path.stem, []).append(path.relative_to(SOURCE).as_posix())
+    return files
+
+
+def repeated_stems() -> dict[str, list[str]]:
+    """Files of which more than two have one stem: an analysis and its section may."""
+    return {stem: files for stem, files in files_of_stem().items() if len(files) > 2}
+
+
 if __name__ == "__main__":
     names = assigned()
     print(f"{generic_share(names):.1%} of {names.total()} assigned names are generic")
@@ -155,3 +180,5 @@ if __name__ == "__main__":
         )
     print(f"{len(EXCUSED)} names of functions are excused:")
     print(*(f"  {name}: {why}" for name, why in EXCUSED.items()), sep="\n")
+    print(f"{len(repeated_stems())} stems of files stand more than twice")
+    print(*(f"  {stem}: {', '.join(files)}" for stem, files in repeated_stems().items()), sep="\n")

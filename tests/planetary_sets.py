@@ -3,7 +3,7 @@
 import numpy as np
 
 from pitchpoint.analyses.analysis import Subject
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.runs.run import load_case
 
 SPEED, LOAD = 3000.0 * np.pi / 30.0, 40.0

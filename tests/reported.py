@@ -10,14 +10,14 @@ import numpy as np
 from records import entries
 from sound import SMOOTH
 
-from pitchpoint.gears.bodies import drawing
+from pitchpoint.core.programs import program
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import drawing
 from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period, phase_sense
 from pitchpoint.gears.pairs import way_of_pairs
-from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
 

@@ -11,7 +11,16 @@ from typing import Any, Self
 from beartype import BeartypeConf, FrozenDict, beartype
 from jaxtyping import install_import_hook
 
-WORDS = {"__init__", "__main__", "citations", "errors", "kept", "programs", "registry", "units"}
+WORDS = {
+    "__init__",
+    "__main__",
+    "citations",
+    "core.kept",
+    "core.programs",
+    "errors",
+    "registry",
+    "units",
+}
 WORDS |= {"cases", "analyses", "runs", "results", "views", "notebook", "cli"}
 """Rooms without formulas; their tests put stand-ins in the place of much that they do not look at."""
 
@@ -27,7 +36,8 @@ def rooms() -> list[str]:
     """All folders that compute."""
     (package,) = find_spec("pitchpoint").submodule_search_locations
     every = [path for path in Path(package).iterdir() if path.name != "__pycache__"]
-    names = {path.stem for path in every if path.suffix in ("", ".py")}
+    names = {path.stem for path in every if path.suffix in ("", ".py")} - {"core"}
+    names |= {f"core.{path.stem}" for path in Path(package, "core").glob("[!_]*.py")}
     return [f"pitchpoint.{name}" for name in sorted(names - WORDS)]
 
 

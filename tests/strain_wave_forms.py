@@ -3,7 +3,7 @@
 from strain_wave_positions import drive
 
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
 
 MODULE, RIM = 0.3e-3, 0.7e-3
 INVOLUTE = InvoluteForm(3.32)

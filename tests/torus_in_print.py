@@ -11,7 +11,7 @@ from pitchpoint.cases.document import leaves
 from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.liu_xiong_torus.motion import torus_motion
+from pitchpoint.published.liu_xiong_torus.printed_motion import torus_motion
 
 NAME, TREE = find_case("liu_xiong_torus")
 

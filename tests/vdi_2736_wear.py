@@ -10,7 +10,7 @@ the report of a commercial program; the guideline itself was not at hand.
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["flank_length", "mean_wear_depth"]
 

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from records import entries
 
-from pitchpoint.gears.bodies import drawing
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
+from pitchpoint.gears.mesh_bodies import drawing
 from pitchpoint.gears.pairs import way_of_pairs
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome

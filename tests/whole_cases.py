@@ -13,7 +13,7 @@ from pitchpoint.cases.drive_schema import TrainTable
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.validation import validated
 from pitchpoint.cases.worn import gears_digest
-from pitchpoint.duty_cycle import table as duty_table
+from pitchpoint.duty_cycle import duty_table
 from pitchpoint.gears import planetary
 from pitchpoint.gears.ball_on_disc import table as ball_on_disc
 from pitchpoint.gears.rack_and_pinion import table as rack_and_pinion

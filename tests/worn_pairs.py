@@ -9,8 +9,8 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.built import Built
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 from pitchpoint.runs.run import load_case

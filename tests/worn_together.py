@@ -8,12 +8,12 @@ import optimistix
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import fast_program
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.errors import InputError
-from pitchpoint.programs import fast_program
-from pitchpoint.wear.gradients import Inputs
 from pitchpoint.wear.history import Cells, DriverTurn, Start, reached_ends, travelled, turn_alone
 from pitchpoint.wear.march import FIRST
+from pitchpoint.wear.wear_gradients import Inputs
 
 __all__ = ["AT_ONCE", "Marches", "worn_together"]
 

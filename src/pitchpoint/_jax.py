@@ -53,8 +53,8 @@ try:
 except ImportError:  # JAX 0.6
     from jax.experimental import enable_x64  # type: ignore[attr-defined,no-redef]
 
+from pitchpoint.core.kept import base_folder, prepared_folder  # noqa: E402
 from pitchpoint.errors import PitchpointError  # noqa: E402
-from pitchpoint.kept import base_folder, prepared_folder  # noqa: E402
 
 __all__ = [
     "array",

@@ -307,7 +307,7 @@ def show(
 @app.command()
 def check(case: CaseName, variant: Variants = None, set_: Settings = None) -> None:
     """Tell what is wrong with a case, its teeth do not bear, or warns, before it is computed."""
-    from pitchpoint.doubts import ranked_doubts
+    from pitchpoint.core.doubts import ranked_doubts
     from pitchpoint.runs.check import check_case
 
     told = ranked_doubts(check_case(case, variant or [], _settings(set_ or [])))
@@ -727,7 +727,7 @@ def compare(
     Several designs: main results with their differences, inputs that differ, and a report with their
     curves on the same axes. One published case: exit status 1 when a row misses without a known cause.
     """
-    from pitchpoint.runs.designs import resolved_reference
+    from pitchpoint.runs.compared_designs import resolved_reference
 
     _demand_names(designs)
     if len(designs) > 1:
@@ -764,8 +764,8 @@ def _compared_designs(
     designs: list[str], output: Path | None, overwrite: bool, units: list[str] | None
 ) -> "tuple[dict[str, Outcome], str]":
     """Results of designs by name, and the report that was written of them."""
-    from pitchpoint.runs.designs import DESIGNS, folder_of
-    from pitchpoint.runs.designs import designs as compared
+    from pitchpoint.runs.compared_designs import DESIGNS, folder_of
+    from pitchpoint.runs.compared_designs import designs as compared
 
     chosen = _units(units) if units else None
     folder = output or folder_of(designs, Path("results"))
@@ -779,7 +779,7 @@ def _compared_designs(
 
 
 def _emit_designs(outcomes: "dict[str, Outcome]") -> None:
-    from pitchpoint.runs.designs import as_json
+    from pitchpoint.runs.compared_designs import as_json
 
     _emit({**as_json(outcomes), "designs": {n: _figures(one) for n, one in outcomes.items()}})
 
@@ -1120,7 +1120,7 @@ def schema(
     """
     from pitchpoint.cases.json_schema import case_schema, table_schema
     from pitchpoint.input.quantities import shown
-    from pitchpoint.sizing.table import TASK_TABLE, Task
+    from pitchpoint.sizing.task_table import TASK_TABLE, Task
 
     if of not in ("case", TASK_TABLE):
         raise InputError(f"{shown(of)} has no schema; known are case and {TASK_TABLE}")
@@ -1131,7 +1131,7 @@ def schema(
 
 def _pages_from(incomplete: str) -> list[str]:
     """Pages that begin so."""
-    from pitchpoint.pages import page_names
+    from pitchpoint.core.pages import page_names
 
     return [name for name in page_names() if name.startswith(incomplete)]
 
@@ -1152,7 +1152,7 @@ def docs(
 
     Into a file or a pipe a page goes as Markdown.
     """
-    from pitchpoint import pages
+    from pitchpoint.core import pages
 
     page = " ".join(words or [])
     if page and "/" not in page and not pages.is_page(page) and (found := pages.search_pages(page)):
@@ -1252,7 +1252,7 @@ def new(
     It runs as it is; every optional key is a remark in it.
     """
     from pitchpoint.cases.template import template
-    from pitchpoint.sizing.table import TASK_TABLE, task_template
+    from pitchpoint.sizing.task_table import TASK_TABLE, task_template
 
     beside = {"torque": torque, "planets": planets, "count": count}
     beside |= {"speed": speed, "life": life, "diameter": diameter}
@@ -1353,7 +1353,7 @@ def size(
     """
     from pitchpoint.results.store import write_text
     from pitchpoint.sizing.sizing import sized_for
-    from pitchpoint.sizing.table import Task, read_task
+    from pitchpoint.sizing.task_table import Task, read_task
     from pitchpoint.views.sizing_report import render_sizing
     from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
@@ -1599,7 +1599,7 @@ def _figures(outcome: "Outcome") -> dict[str, Any]:
 
 def _summary(outcome: "Outcome", number: int) -> None:
     from pitchpoint.views.point import by_members
-    from pitchpoint.views.registry import in_order
+    from pitchpoint.views.section_registry import in_order
 
     _heading(outcome.manifest, number)
     for section in in_order():

@@ -23,8 +23,8 @@ from decimal import Decimal
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, NoReturn, overload
 
+from pitchpoint.core.kept import base_folder, prepared_folder, read_kept, write_kept
 from pitchpoint.errors import InputError
-from pitchpoint.kept import base_folder, prepared_folder, read_kept, write_kept
 
 if TYPE_CHECKING:
     import numpy as np

@@ -6,7 +6,7 @@ import pytest
 from pitchpoint import citations
 from pitchpoint._jax import jax, jnp
 from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012
-from pitchpoint.lubrication.registry import ASPERITY_LOAD
+from pitchpoint.lubrication.lubrication_registry import ASPERITY_LOAD
 
 MODULUS, RADIUS, ALPHA = 2.26e11, 0.01, 4500.0 / 2.26e11
 GIVEN = {

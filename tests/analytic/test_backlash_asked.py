@@ -14,7 +14,7 @@ from sound import PAIR
 
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.analyses.teeth import drawing_of
-from pitchpoint.cases.inputs import resolved
+from pitchpoint.cases.resolved_inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.gears.cylindrical.family import FAMILY
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair

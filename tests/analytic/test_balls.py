@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq, minimize
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.status import Code
 from pitchpoint.gears import on_balls
 from pitchpoint.gears.on_balls import OnBalls, ball_force, ball_stiffness, seated
 from pitchpoint.gears.strain_wave.ball_bearing import (
@@ -20,7 +21,6 @@ from pitchpoint.gears.strain_wave.ring_compliance import ring_modes
 from pitchpoint.loading import equilibrium as loading
 from pitchpoint.loading.equilibrium import equilibrium
 from pitchpoint.materials.solids import Solid
-from pitchpoint.status import Code
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 POINT = ball_stiffness_palmgren_1959(5e-3)

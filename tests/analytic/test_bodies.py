@@ -10,11 +10,11 @@ import pytest
 from sound import WAVE
 
 from pitchpoint._jax import array
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.bodies import bodies_of
-from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.variant import Variant
-from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.families import TABLES, sample_of
+from pitchpoint.gears.mesh_bodies import plain_inertia
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.torus.table import TorusGears
 

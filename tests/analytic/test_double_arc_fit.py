@@ -12,7 +12,7 @@ from pitchpoint.gears.strain_wave import double_arc_fit
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.double_arc_fit import fit_double_arc, merit_of
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS, DoubleArcForm
 
 TEETH = (100, 102)
 START = DOUBLE_ARCS["liu"]

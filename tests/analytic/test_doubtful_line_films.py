@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from line_contacts import MODULUS, OIL, contact, of_moes
 
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import of_grid
 from pitchpoint.lubrication.ehl.line import LineContact
@@ -16,7 +17,6 @@ from pitchpoint.lubrication.ehl.solve import LEAST_FALL, OF_HALF, OPENS, THINNES
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.status import Code
 
 EYRING = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, shear_parameters={"eyring_stress": 5.0})
 

@@ -11,16 +11,16 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.bearing_loss import palmgren_1959
 from pitchpoint.efficiency.breakaway import dry_and_viscous
 from pitchpoint.efficiency.drag import Drag, at_rest
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, state
-from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.efficiency.running_torque import no_load_torque, torques_at_rest
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

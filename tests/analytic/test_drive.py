@@ -11,17 +11,17 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.drive import chained, drive_cycle
 from pitchpoint.efficiency.drive_summary import mean_friction_of_drive
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS
 from pitchpoint.efficiency.mesh_link import MeshLink
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, extremes
-from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
 from pitchpoint.efficiency.summary import mean_friction
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.loading.registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -9,9 +9,15 @@ import pytest
 
 from pitchpoint._jax import jnp
 from pitchpoint.analyses.analysis import Subject
+from pitchpoint.analyses.analysis_registry import (
+    ANALYSES,
+    FOUR_QUADRANTS,
+    INSPECTION,
+    REFLECTED,
+    TORSION,
+)
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, LAWS_THERE, OPERATION
-from pitchpoint.analyses.registry import ANALYSES, FOUR_QUADRANTS, INSPECTION, REFLECTED, TORSION
 from pitchpoint.cases.built_drive import BuiltDrive
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.drive import drive_cycle

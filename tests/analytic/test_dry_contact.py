@@ -5,15 +5,15 @@ import jax
 import numpy as np
 import pytest
 
+from pitchpoint.contact.contact_registry import END_PROFILES
 from pitchpoint.contact.dry_contact import dry_contact, near_ends, pressed
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.end_profiles import chamfered, crowned, dub_off, log_relieved, straight
 from pitchpoint.contact.gaps import elliptic_gap, line_gap, missing_along
 from pitchpoint.contact.half_space import graded_edges, half_space
 from pitchpoint.contact.hertz import line_half_width, line_pressure
-from pitchpoint.contact.registry import END_PROFILES
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
-from pitchpoint.status import Code
 
 MODULUS, RADIUS, LOAD = 226.4e9, 0.01, 1e5
 HALF_WIDTH = float(line_half_width(line_load=LOAD, radius=RADIUS, modulus=MODULUS))

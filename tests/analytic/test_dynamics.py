@@ -8,11 +8,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.status import Code
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.energy import vibration_energies
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import by_steps
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.steady_state import separating_steady_state, steady_state
 from pitchpoint.dynamics.sweep import speed_sweep
@@ -23,7 +24,6 @@ from pitchpoint.dynamics.system import (
 )
 from pitchpoint.errors import InputError
 from pitchpoint.gears.period import lobatto
-from pitchpoint.status import Code
 
 NODES = 24
 MASS, MEAN, LOAD = 2.2e-3, 1.14e7, 141.0

@@ -11,9 +11,9 @@ from pitchpoint.efficiency.quasi_static import Cycle, Design, Models, Operation,
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.period import nodes
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.lubrication.friction_coefficient import xu_2007
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness

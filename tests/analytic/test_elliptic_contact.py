@@ -8,6 +8,7 @@ import scipy.special
 from scipy.optimize import brentq
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT
 from pitchpoint.contact.ellipse import (
     Ellipse,
     _principal_stresses,
@@ -17,7 +18,6 @@ from pitchpoint.contact.ellipse import (
 )
 from pitchpoint.contact.elliptic_integrals import carlson_rd, carlson_rf, complete_integrals
 from pitchpoint.contact.hertz import line_half_width, line_pressure, line_shear
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT
 
 MODULUS = 226e9
 RATIOS = (1e-3, 0.01, 0.3, 1.0, 1.25, 3.0, 30.0, 1e3)

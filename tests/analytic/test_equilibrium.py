@@ -18,7 +18,7 @@ from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading import equilibrium as module
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium, touching_approach
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.sharing import demand_sharing, sharing_applies
 
 LANES, STATES = 40, 60

@@ -13,7 +13,7 @@ from pitchpoint.lubrication.film_thickness import (
     pan_hamrock_1989,
     pan_hamrock_1989_central,
 )
-from pitchpoint.lubrication.registry import FILM_THICKNESS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS, ROLLING_RESISTANCE
 from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991
 
 MODULUS = 206e9 / 0.91

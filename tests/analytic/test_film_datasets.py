@@ -9,14 +9,14 @@ import pytest
 import xarray as xr
 from sound import OnDemand
 
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.solve import _begin, solve_lines
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.results.films import film_dataset, films_of_dataset
+from pitchpoint.results.film_datasets import film_dataset, films_of_dataset
 from pitchpoint.results.store import load, save
 
 STEEL = Conductor(conductivity=46.0, heat_capacity=3.64e6)

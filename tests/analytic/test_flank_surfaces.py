@@ -17,10 +17,10 @@ from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.cylindrical.modified import Modifications, modified
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness

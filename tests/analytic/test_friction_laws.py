@@ -10,7 +10,7 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import UNITS, evaluate, law_arguments
 from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2, xu_2007
-from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS, LAWS, FrictionLaw
 
 BY_NAME = {law.name: law for law in LAWS}
 

@@ -11,8 +11,8 @@ from sound import pair
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.efficiency.summary import loss_factor
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness

@@ -16,7 +16,11 @@ from pitchpoint.lubrication.inlet_heating import (
     with_inlet_heating,
     zhu_cheng_1988,
 )
-from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import (
+    FILM_THICKNESS,
+    INLET_HEATING,
+    ROLLING_RESISTANCE,
+)
 
 FACTORS = [murch_wilson_1975, wilson_sheu_1983, zhu_cheng_1988, aihara_1987]
 AT = {"thermal_loading": 4.0, "slide_roll_ratio": 0.5, "pressure": 1e9, "modulus": 226.4e9}

@@ -8,8 +8,7 @@ import pytest
 from scipy.optimize import brentq, minimize, minimize_scalar
 
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import disc
-from pitchpoint.gears.cylindrical.inspection import (
+from pitchpoint.gears.cylindrical.drawing_dimensions import (
     Toothing,
     backlash,
     backlash_limits,
@@ -17,6 +16,7 @@ from pitchpoint.gears.cylindrical.inspection import (
 )
 from pitchpoint.gears.cylindrical.iso_286 import standard_tolerance, symmetrical_deviation
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
+from pitchpoint.gears.mesh_bodies import disc
 
 MM = 1e-3
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
 from pitchpoint.dynamics.excitation import ErrorOrders
-from pitchpoint.dynamics.joint import Joint, Sliding, joint_response
 from pitchpoint.dynamics.joint_course import MotorRun, fading, joint_motion, steady_joint_vibration
+from pitchpoint.dynamics.joint_vibration import Joint, Sliding, joint_response
 from pitchpoint.loading.wind_up_curve import WindUpCurve
-from pitchpoint.programs import program
-from pitchpoint.status import Code
 
 STIFFNESS, RATIO, TORQUE, LOAD, MOTOR = 4e4, 100.0, 60.0, 1.2, 0.7
 ERROR = 1e-4

@@ -9,11 +9,11 @@ from scipy.signal import find_peaks
 from sound import quick_first
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.registry import SUMMITS
+from pitchpoint.contact.contact_registry import SUMMITS
 from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012
 from pitchpoint.lubrication.ehl.doubts import flooded_inlet
-from pitchpoint.lubrication.ehl.grid import grid
 from pitchpoint.lubrication.ehl.line import LineContact, problem_of
+from pitchpoint.lubrication.ehl.line_grid import grid
 from pitchpoint.lubrication.ehl.newton import dry, step
 from pitchpoint.lubrication.ehl.solve import line_films, solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from sound import wave_rates
 
-from pitchpoint.gears.strain_wave.load_limits import (
+from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
+from pitchpoint.gears.strain_wave.strain_wave_registry import WAVE_SHAPES
+from pitchpoint.gears.strain_wave.strength_estimates import (
     bearing_life,
     curvature_change,
     face_stress,
@@ -15,8 +17,6 @@ from pitchpoint.gears.strain_wave.load_limits import (
     tube_shear,
     von_mises,
 )
-from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
-from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
 
 RADIUS = 0.03
 ANGLES = np.linspace(0.0, np.pi, 73)

@@ -12,8 +12,8 @@ from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.iso_6336_stiffness import estimate
+from pitchpoint.loading.loading_registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
-from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.tooth_compliance import terms_of, uncovered
 from pitchpoint.materials.solids import Solid
 

@@ -8,29 +8,29 @@ from sound import quick_first
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.ellipse import hertz_1881
-from pitchpoint.dynamics.bodies import Body, motor, radial_bearings
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
+from pitchpoint.dynamics.moving_bodies import Body, motor, radial_bearings
+from pitchpoint.dynamics.pair_vibration import Vibrating, excited, steady
 from pitchpoint.dynamics.passage import passage, polynomial, tabulated
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import (
     steady_motion,
 )
 from pitchpoint.dynamics.transient import transient
-from pitchpoint.dynamics.vibration import Vibrating, excited, steady
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.programs import program
-from pitchpoint.status import Code
 
 STEEL = solids.find("steel").build()
 FIRM = dataclasses.replace(STEEL, young=1e4 * STEEL.young)

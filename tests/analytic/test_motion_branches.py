@@ -8,18 +8,18 @@ from moving_pair import INERTIA, LAW, LOAD, OPERATION, PAIR, XU, moving
 from moving_pair import SPEED as SLOW
 
 from pitchpoint._jax import array
-from pitchpoint.dynamics.bodies import Body, radial_bearings
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import mean_stiffness, modes
+from pitchpoint.dynamics.moving_bodies import Body, radial_bearings
 from pitchpoint.dynamics.passage import passage
 from pitchpoint.dynamics.steady_motion import film, steady_motion
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959
-from pitchpoint.lubrication.registry import FILM_THICKNESS, ROLLING_RESISTANCE
-from pitchpoint.programs import program
-from pitchpoint.status import Code
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS, ROLLING_RESISTANCE
 
 GRID = PeriodGrid(6, 20)
 CONSTANT = dataclasses.replace(

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from moving_pair import INERTIA, LOAD, SPEED, moving, relative
 
-from pitchpoint.dynamics.bodies import Body
+from pitchpoint.core.status import Code
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
+from pitchpoint.dynamics.moving_bodies import Body
 from pitchpoint.dynamics.steady_motion import steady_motion
-from pitchpoint.status import Code
 
 GRID = PeriodGrid(4, 16)
 FOUND = (Code.SOLVED, Code.UNRESOLVED)

@@ -16,22 +16,22 @@ from pitchpoint.contact.dry_contact import dry_contact
 from pitchpoint.contact.end_profiles import crowned
 from pitchpoint.contact.gaps import elliptic_gap
 from pitchpoint.contact.half_space import half_space
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
+from pitchpoint.lubrication.ehl.ehl_registry import COARSE
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import PatchFilm, patch_film
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
 from pitchpoint.lubrication.ehl.patch.grid_error import OPENS, REMAINS
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import jacobian_product, linearised
+from pitchpoint.lubrication.ehl.patch.patch_films import PatchFilms, film_near, solve_patch
 from pitchpoint.lubrication.ehl.patch.response import polished_patch
-from pitchpoint.lubrication.ehl.registry import COARSE
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import hamrock_dowson_1977_central
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.status import Code
 
 MODULUS = 2.26e11
 ENDS = np.array([-1e-3, 1e-3])

@@ -8,9 +8,9 @@ import pytest
 from pitchpoint._jax import array, jax
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out
+from pitchpoint.lubrication.ehl.patch.patch_films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.solve import solve
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.materials.fluid import Fluid

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
-from pitchpoint.lubrication.ehl.patch.films import solve_patch
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.layout import laid_out
+from pitchpoint.lubrication.ehl.patch.patch_films import solve_patch
 from pitchpoint.lubrication.ehl.patch.solve import solve
 from pitchpoint.lubrication.ehl.patch.transient import PatchMoment, march_patches
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.results.films import march_dataset
-from pitchpoint.status import Code
+from pitchpoint.results.film_datasets import march_dataset
 
 MODULUS = 2.26e11
 OIL = Fluid(viscosity=0.04, pressure_viscosity=2.2e-8, shear_law="newtonian")

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from scipy.constants import pi
 
-from pitchpoint import programs
 from pitchpoint.contact.end_profiles import crowned
+from pitchpoint.core import programs
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch import newton
 from pitchpoint.lubrication.ehl.patch import solve as solving
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.newton import _hopeless
+from pitchpoint.lubrication.ehl.patch.patch_films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.transient import march_patches
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.materials.fluid import Fluid

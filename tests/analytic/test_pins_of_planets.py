@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.errors import InputError

@@ -23,8 +23,8 @@ from planetary_sets import (
 )
 
 from pitchpoint.analyses.analysis import Subject
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.plausibility import unlikely
-from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.running import from_rest
 from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.errors import CollectedInputError, InputError

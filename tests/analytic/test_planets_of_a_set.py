@@ -5,19 +5,19 @@ import pytest
 from set_cases import PIN, PLANETARY, SET, TABLES, figures, gears
 
 import pitchpoint as pp
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.duty import rated_lives
-from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.tooth_life import mesh_member_names
 from pitchpoint.analyses.train_period import over_period
-from pitchpoint.doubts import doubts_of
+from pitchpoint.core.doubts import doubts_of
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.duty_cycle.history import load_steps
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import key_figures
+from pitchpoint.views.section_registry import in_order
 
 SHIFTED = {"teeth": [24, 29, 84], "profile_shift": [0.3, 0.3, "from centre distance"]}
 HELICAL = {

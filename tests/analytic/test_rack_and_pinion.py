@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.families import built_gears
+from pitchpoint.gears.mesh_bodies import main_dimensions
 from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.tooth_section import tooth_sections
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import beam_compliance, terms_of
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.programs import program
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.point import way_in_a_turn
 

@@ -10,16 +10,16 @@ from budget import EVENT
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import contact_velocity
+from pitchpoint.core.status import Code, Status, status_summary
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.status import Code, Status, status_summary
 
 LAW = {law.name: law for law in LAWS}
 STEEL = solids.find("steel").build()

@@ -12,7 +12,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import of_volume
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.materials.registry import DENSITY, LEAST_PRESSURE, SHEAR_STRESS, VISCOSITY
+from pitchpoint.materials.materials_registry import DENSITY, LEAST_PRESSURE, SHEAR_STRESS, VISCOSITY
 from pitchpoint.materials.rheology import (
     bair_2015,
     bair_winer_1979,

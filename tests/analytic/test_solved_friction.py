@@ -11,13 +11,14 @@ from sound import PAIR, WAVE
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.caveats import why_outside
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.analyses.films import FILM
 from pitchpoint.analyses.loss_map import LOSS_MAP
 from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
 from pitchpoint.analyses.running import RUNNING
+from pitchpoint.analyses.solved_films import FILM
 from pitchpoint.analyses.summaries import profiles, summaries
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
+from pitchpoint.core.status import Code
 from pitchpoint.efficiency.film_map import FilmMap
 from pitchpoint.efficiency.gradients import mean_loss_gradient
 from pitchpoint.efficiency.in_turns import in_turns
@@ -27,13 +28,12 @@ from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.lubrication.conditions import evaluate
 from pitchpoint.lubrication.ehl import traction
+from pitchpoint.lubrication.ehl.ehl_registry import SMOOTH
 from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.ehl.registry import SMOOTH
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.traction import EHL_LINE, FilmTraction
-from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
-from pitchpoint.status import Code
 
 COARSE = FilmModel(nodes=33)
 """Few nodes, whose films take a fifth of the time."""

@@ -18,7 +18,11 @@ from pitchpoint._jax import jnp
 from pitchpoint.errors import InputError
 from pitchpoint.gears.nominal_motion import mesh_ends, nominal_motion, nominal_period
 from pitchpoint.gears.strain_wave.design import InvoluteForm, double_arc_flank
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
+from pitchpoint.gears.strain_wave.strain_wave_registry import (
+    DOUBLE_ARCS,
+    WAVE_SHAPES,
+    DoubleArcForm,
+)
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
 
 

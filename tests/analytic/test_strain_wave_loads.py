@@ -18,10 +18,10 @@ from pitchpoint.efficiency.quasi_static import Models, Operation, cycle, engagem
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import of_pairs
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.tooth_compliance import terms_of
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 
 CONSTANT = next(law for law in LAWS if law.name == "constant")
 FRICTION = 0.1

@@ -23,12 +23,12 @@ from rated_pairs import (
 )
 
 from pitchpoint.contact.hertz import line_pressure
+from pitchpoint.core.programs import program
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.rated_pair import bare_pair
 from pitchpoint.materials import solids
-from pitchpoint.programs import program
-from pitchpoint.results.strength import STRENGTH
+from pitchpoint.results.strength_variables import STRENGTH
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.strength.rating import rated
 from pitchpoint.strength.treatments import TREATMENTS

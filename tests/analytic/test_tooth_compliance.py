@@ -22,7 +22,7 @@ from pitchpoint.loading.foundation import (
     foundation_warnings,
     sainsot_2004,
 )
-from pitchpoint.loading.registry import TOOTH_COMPLIANCE
+from pitchpoint.loading.loading_registry import TOOTH_COMPLIANCE
 from pitchpoint.loading.tooth_compliance import (
     beam_compliance,
     interpolate,

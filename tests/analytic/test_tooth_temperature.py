@@ -12,14 +12,14 @@ import pytest
 import pitchpoint
 from pitchpoint import citations
 from pitchpoint.cases.solids import heating, solids_at_root_temperature, surrounded
-from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, Status
+from pitchpoint.efficiency.efficiency_registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.summary import tooth_heat_figures
 from pitchpoint.efficiency.tooth_temperature import isothermal, modulus_at, vdi_2736_2
 from pitchpoint.efficiency.warm_teeth import warm_teeth
 from pitchpoint.errors import InputError
 from pitchpoint.materials import solids
-from pitchpoint.programs import program
-from pitchpoint.status import Code, Status
 
 # Four steel/PA66 pairs at 0.42 N m and 1800 rpm: wheel teeth, normal module [mm], loss factor as
 # printed with two digits, rise of the flank temperature [K] at mu = 0.2.

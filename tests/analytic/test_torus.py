@@ -13,8 +13,8 @@ from scipy.optimize import minimize_scalar
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.families import built_gears
+from pitchpoint.gears.mesh_bodies import main_dimensions
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.gears.torus.table import TorusGears

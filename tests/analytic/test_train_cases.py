@@ -8,14 +8,14 @@ import pytest
 from set_cases import PLANETARY, SET, STEPPED, TABLES, THREE_K, figures, gears
 
 import pitchpoint as pp
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.inspection import inspection_part
-from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency import train_summary
 from pitchpoint.runs.run import load_case
-from pitchpoint.views.registry import TRAIN
+from pitchpoint.views.section_registry import TRAIN
 from pitchpoint.views.train_picture import train_pictures
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -11,8 +11,8 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.drive.assembly import equal_angles, planet_phases
 from pitchpoint.drive.kinematics import Ends, Link
 from pitchpoint.efficiency.drag import Drag
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS
 from pitchpoint.efficiency.quasi_static import Operation
-from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.efficiency.train import gear_train

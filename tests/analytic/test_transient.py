@@ -7,7 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body, Support, radial_bearings
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
+from pitchpoint.dynamics.moving_bodies import Body, Support, radial_bearings
 from pitchpoint.dynamics.right_hand_side import MovingMesh, contact_forces
 from pitchpoint.dynamics.transient import CLOSED, _code, _known, transient
 from pitchpoint.efficiency.drag import Drag
@@ -16,12 +18,10 @@ from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE, FrictionLaw
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.programs import program
-from pitchpoint.status import Code
 
 STEEL = solids.find("steel").build()
 COUNT = 41

@@ -8,10 +8,10 @@ import pytest
 from moving_pair import INERTIA, LOAD, PAIR, SPEED, moving, relative
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body
+from pitchpoint.core.status import Code
+from pitchpoint.dynamics.moving_bodies import Body
 from pitchpoint.dynamics.transient import transient, transient_motion
 from pitchpoint.errors import InputError
-from pitchpoint.status import Code
 
 TIMES = array(np.linspace(0.0, 0.01, 21))
 RATE = SPEED * np.asarray(PAIR.motion)

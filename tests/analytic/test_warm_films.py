@@ -9,11 +9,12 @@ from scipy.special import k0
 from sound import quick_first
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.ehl_registry import ISOTHERMAL, THERMAL
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, THERMAL
 from pitchpoint.lubrication.ehl.solve import line_films, solve_lines
 from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH, Spread
 from pitchpoint.lubrication.ehl.texture import Rough
@@ -21,7 +22,6 @@ from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip, pe
 from pitchpoint.lubrication.inlet_heating import murch_wilson_1975
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.status import Code
 
 MODULUS = 2.26e11
 STEEL = Conductor.of(solids.find("steel"))

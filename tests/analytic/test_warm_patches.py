@@ -9,14 +9,15 @@ import pytest
 from scipy.constants import pi
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
 from pitchpoint.lubrication.ehl.patch.fields import patch_film
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, film_near, solve_patch
 from pitchpoint.lubrication.ehl.patch.heat import TEMPERATURES, contact_heat, warmed_patch
 from pitchpoint.lubrication.ehl.patch.layout import problem_on
+from pitchpoint.lubrication.ehl.patch.patch_films import PatchFilms, film_near, solve_patch
 from pitchpoint.lubrication.ehl.patch.response import polished_warm
 from pitchpoint.lubrication.ehl.patch.transient import march_patches
 from pitchpoint.lubrication.ehl.solve import solve_lines
@@ -25,8 +26,7 @@ from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials import solids
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.results.films import patch_dataset
-from pitchpoint.status import Code
+from pitchpoint.results.film_datasets import patch_dataset
 
 MODULUS = 2.26e11
 STEEL = Conductor.of(solids.find("steel"))

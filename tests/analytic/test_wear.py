@@ -34,9 +34,9 @@ from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.three_k import mesh_efficiency
 from pitchpoint.wear import film_share
-from pitchpoint.wear.gradients import march_sensitivities
 from pitchpoint.wear.history import Cells, DriverTurn, WearModel, unworn_start, wear_of_turn
 from pitchpoint.wear.march import Limit, Rate, Reached, unworn_flanks, wear_step
+from pitchpoint.wear.wear_gradients import march_sensitivities
 
 
 @cache

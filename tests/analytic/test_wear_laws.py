@@ -16,8 +16,8 @@ from pitchpoint.sizing.three_k import mesh_efficiency
 from pitchpoint.units import parse
 from pitchpoint.wear.film_defect import fractional_film_defect
 from pitchpoint.wear.laws import UNITS
-from pitchpoint.wear.registry import WEAR_LAWS
-from pitchpoint.wear.stages import run_in_end, severe_start
+from pitchpoint.wear.wear_registry import WEAR_LAWS
+from pitchpoint.wear.wear_stages import run_in_end, severe_start
 
 GAS = 8.31446261815324
 HARDNESS = 200.0 * 9.80665e6

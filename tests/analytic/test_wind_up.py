@@ -22,7 +22,7 @@ from pitchpoint.loading import wind_up as module
 from pitchpoint.loading.balance import force_balance
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import touching_approach
-from pitchpoint.loading.kinematic_error import added_gap, kinematic_error
+from pitchpoint.loading.mesh_kinematic_error import added_gap, kinematic_error
 from pitchpoint.loading.mesh_stiffness import mesh_stiffness
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import hysteresis, wind_up

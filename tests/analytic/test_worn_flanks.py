@@ -11,9 +11,9 @@ from worn_pairs import CELLS, EXAMPLES, begun, discs, pair, turn
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.surface import Spot, missing
 from pitchpoint.contact.worn import WIDEST, Worn, WornAt, averaged
-from pitchpoint.gears.bodies import main_dimensions
+from pitchpoint.gears.mesh_bodies import main_dimensions
 from pitchpoint.runs.run import load_case
-from pitchpoint.wear.teeth import backlash_growth, half_teeth, tips_of
+from pitchpoint.wear.worn_teeth import backlash_growth, half_teeth, tips_of
 
 # ---- worn teeth
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pitchpoint.analyses.analysis import Subject
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.errors import InputError
 from pitchpoint.results.by_stage import by_stage

@@ -27,8 +27,8 @@ from battery_families import (
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import contact_velocity
 from pitchpoint.efficiency.drag import Drag, at_rest, resistance
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS
 from pitchpoint.efficiency.quasi_static import Operation, state
-from pitchpoint.efficiency.registry import BEARING_LOSS
 from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.gears.pairs import ACTION, TURN, touching, way_of_pairs
 

@@ -21,9 +21,9 @@ from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.gears.strain_wave.design import InvoluteForm, build_strain_wave
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -24,8 +24,8 @@ from pitchpoint.cases.document import resolve
 from pitchpoint.cases.laws import FRICTION, FrictionChoice
 from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
-from pitchpoint.gears import table as every
-from pitchpoint.gears.table import MODULE
+from pitchpoint.gears import gears_table as every
+from pitchpoint.gears.gears_table import MODULE
 from pitchpoint.input.kinds import COEFFICIENT
 from pitchpoint.input.tables import Table
 from pitchpoint.lubrication.conditions import law_arguments

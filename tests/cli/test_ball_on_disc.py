@@ -14,8 +14,8 @@ from pitchpoint.cases.study_tables import Study, Sweep
 from pitchpoint.errors import InputError
 from pitchpoint.runs.catalogue import entries, figures_by_law
 from pitchpoint.runs.run import Outcome, run_case, uncomputed_manifests
-from pitchpoint.views.registry import SECTIONS
 from pitchpoint.views.report import report_page
+from pitchpoint.views.section_registry import SECTIONS
 from pitchpoint.views.sections.answer import operation_summary
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ball_on_disc.toml"

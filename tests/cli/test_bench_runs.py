@@ -8,7 +8,7 @@ import pytest
 
 import pitchpoint as pp
 from pitchpoint import cli
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.runs.run import run_case
 
 TABLES = {

@@ -19,9 +19,15 @@ from pitchpoint import cli
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.exports.files import FORMATS, export
-from pitchpoint.exports.tables import sheets
+from pitchpoint.exports.result_tables import sheets
 from pitchpoint.results.variable import dimensionless
-from pitchpoint.runs.designs import MainFigure, as_json, designs, main_results, resolved_reference
+from pitchpoint.runs.compared_designs import (
+    MainFigure,
+    as_json,
+    designs,
+    main_results,
+    resolved_reference,
+)
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_outcomes, run_case, run_variant
 from pitchpoint.views import show

@@ -16,9 +16,9 @@ from documentation import PAGES, ROOT, block, blocks
 
 import pitchpoint
 from pitchpoint import cli
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.engagement import check_heights
-from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.height_maps import height_maps
@@ -29,15 +29,15 @@ from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import UNITS as CONDITIONS
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.publication_registry import PUBLICATIONS
 from pitchpoint.results.store import dataset, save
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs import run
-from pitchpoint.runs.designs import resolved_reference
+from pitchpoint.runs.compared_designs import resolved_reference
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.layouts import layout_of
 from pitchpoint.runs.optimum_task import OptimiserTask
-from pitchpoint.sizing.table import Task
+from pitchpoint.sizing.task_table import Task
 
 PAIR, VARIANTS = blocks("README.md", "toml")
 (WHOLE_WITH_VARIANTS,) = blocks("guide/variants.md", "toml")

@@ -9,7 +9,8 @@ import pytest
 import typer
 from documentation import PAGES
 
-from pitchpoint import cli, pages
+from pitchpoint import cli
+from pitchpoint.core import pages
 
 
 def printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *said: str) -> str:

@@ -11,19 +11,19 @@ import xarray as xr
 from mapped_pair import MOVING, PAIR, command, moving_drive, variant
 
 import pitchpoint as pp
-from pitchpoint.analyses.figures import duty_figures
+from pitchpoint.analyses.analysis_registry import DUTY as DUTY_CYCLE
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.four_quadrants import table_of
-from pitchpoint.analyses.registry import DUTY as DUTY_CYCLE
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.analyses.main_figures import duty_figures
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import read_tables
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import doubts_of, ranked_doubts
+from pitchpoint.core.doubts import doubts_of, ranked_doubts
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import header, module
 from pitchpoint.runs.jobs import chosen_jobs, jobs
 from pitchpoint.runs.run import Outcome, write_results
-from pitchpoint.views.registry import DUTY as DUTY_SECTION
+from pitchpoint.views.section_registry import DUTY as DUTY_SECTION
 from pitchpoint.views.sections.duty import actuator_points, operating_points
 
 

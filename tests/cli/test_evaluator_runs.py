@@ -25,8 +25,8 @@ from mapped_pair import (
     whole,
 )
 
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.four_quadrants import table_of
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError

@@ -19,7 +19,7 @@ from pitchpoint.cases.library import find_case
 from pitchpoint.cases.study_tables import Sweep
 from pitchpoint.cases.validation import validate
 from pitchpoint.gears.families import TABLES, sample_of
-from pitchpoint.gears.table import GearsTable
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.runs import explore as exploring
 from pitchpoint.runs.case import Case
 from pitchpoint.runs.explore import Explored, explore, usual_keys

@@ -14,14 +14,15 @@ from sound import PAIR
 from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film as solved
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.film_contacts import contact_states, film_model_of, patch_grid_of
 from pitchpoint.analyses.film_cycle import _of_pieces, _of_summits
-from pitchpoint.analyses.films import FILM
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.solved_films import FILM
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.films import film_model
+from pitchpoint.cases.film_choices import film_model
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import Doubt, stored
+from pitchpoint.core.doubts import Doubt, stored
+from pitchpoint.core.status import Code
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
@@ -31,9 +32,8 @@ from pitchpoint.materials.lubricants import find
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
-from pitchpoint.status import Code
-from pitchpoint.views.registry import FILM as SECTION
 from pitchpoint.views.report import report_page
+from pitchpoint.views.section_registry import FILM as SECTION
 from pitchpoint.views.sections.film import film_answer
 
 CASE = f"""{PAIR}

@@ -14,19 +14,19 @@ from pages import opened
 from sound import PAIR
 
 from pitchpoint.analyses import film_squeeze
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.engagement import _around, _shown, course_of
-from pitchpoint.analyses.films import FILM_SQUEEZE
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.solved_films import FILM_SQUEEZE
 from pitchpoint.analyses.whole_contacts import whole_contacts
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.layout import laid_out
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
-from pitchpoint.status import Code
-from pitchpoint.views.registry import FILM_SQUEEZE as SECTION
 from pitchpoint.views.report import report_page
 from pitchpoint.views.screen import head
+from pitchpoint.views.section_registry import FILM_SQUEEZE as SECTION
 
 SQUEEZE = """
 [models]

@@ -15,21 +15,21 @@ from stopped import stopped_and_gone_on
 
 from pitchpoint.analyses import film_cycle, finite_film
 from pitchpoint.analyses.analysis import silent
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.caveats import cold_warning
 from pitchpoint.analyses.film_contacts import contact_states
-from pitchpoint.analyses.films import FILM, FINITE_FILM
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.solved_films import FILM, FINITE_FILM
 from pitchpoint.analyses.whole_contacts import PLACES, one_contact, whole_contacts
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
+from pitchpoint.lubrication.ehl.patch.patch_films import PatchFilms, solve_patch
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
-from pitchpoint.status import Code
 from pitchpoint.views.film_courses import film_course_panel
-from pitchpoint.views.registry import FINITE_FILM as SECTION
 from pitchpoint.views.report import report_page
 from pitchpoint.views.screen import head, screen_value
+from pitchpoint.views.section_registry import FINITE_FILM as SECTION
 
 MODELS = '[models]\nfriction = { name = "constant", coefficient = 0.05 }\n'
 FINITE = '[film]\nsolver = "finite_line"\nphases = 3\nnodes = 33\n'

@@ -19,8 +19,8 @@ from scipy.integrate import cumulative_trapezoid, solve_ivp
 from pitchpoint._jax import array
 from pitchpoint.analyses.motion import moving_of
 from pitchpoint.dynamics.excitation import ErrorOrders
-from pitchpoint.dynamics.joint import Joint, Sliding
 from pitchpoint.dynamics.joint_course import MotorRun, joint_motion
+from pitchpoint.dynamics.joint_vibration import Joint, Sliding
 from pitchpoint.exports.simulators import Asked, HandedOver, hand_over
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.loading.wind_up_curve import WindUpCurve

@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 import xarray as xr
 from mapped_pair import MOVING, PAIR, TOLERANCE, locking_drive, moving_drive, variant, whole
+from pitchpoint.views.registry import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.figures import HOLDING_BANDS, held_at_operation, standstill_figures
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.four_quadrants import loss_beside, loss_of_output, quadrant_axes, table_of
 from pitchpoint.analyses.loss_map import maps
+from pitchpoint.analyses.main_figures import HOLDING_BANDS, held_at_operation, standstill_figures
 from pitchpoint.analyses.operation import BACK_DRIVING, OPERATION
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.analyses.running import BANDS, RUNNING, from_rest
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views import show
-from pitchpoint.views.registry import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 from pitchpoint.views.sections.beside import BESIDE
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

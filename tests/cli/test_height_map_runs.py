@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from sound import PAIR
 
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.engagement import course_of
-from pitchpoint.analyses.films import FILM_SQUEEZE, FINITE_FILM
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.solved_films import FILM_SQUEEZE, FINITE_FILM
 from pitchpoint.analyses.whole_contacts import one_contact, whole_contacts
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.patch.films import solve_patch
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
+from pitchpoint.lubrication.ehl.patch.patch_films import solve_patch
 from pitchpoint.lubrication.ehl.patch.plan import placed_contacts
 from pitchpoint.runs import run as running
 from pitchpoint.runs.run import Outcome, load_case, uncomputed_manifests

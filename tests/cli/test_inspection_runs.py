@@ -10,8 +10,8 @@ from sound import PAIR
 from pitchpoint._jax import array
 from pitchpoint.analyses.inspection import inspection_part
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
+from pitchpoint.gears.mesh_bodies import plain_inertia
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views.section import Page, Paragraph, SectionTable
 from pitchpoint.views.sections.inspection import INSPECTION as SECTION

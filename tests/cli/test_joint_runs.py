@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from sound import WAVE
 
+from pitchpoint.analyses.analysis_registry import ANALYSES, JOINT, TORSION
 from pitchpoint.analyses.joint import RATED, TORQUES, _found, joint_part
-from pitchpoint.analyses.registry import ANALYSES, JOINT, TORSION
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.registry import JOINT as SECTION
 from pitchpoint.views.report import report_page
 from pitchpoint.views.screen import head
+from pitchpoint.views.section_registry import JOINT as SECTION
 from pitchpoint.views.sections.joint import critical_rows
 
 DRIVE = f"""{WAVE}

@@ -11,10 +11,10 @@ import xarray as xr
 from sound import PAIR, quick_first
 
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.cases.inputs import resolved
+from pitchpoint.cases.resolved_inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.registry import FILM_THICKNESS, INLET_HEATING, FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS, INLET_HEATING, FrictionLaw
 from pitchpoint.views.inputs import printed_input_rows
 
 TREE = tomllib.loads(PAIR)

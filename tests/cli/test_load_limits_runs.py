@@ -9,8 +9,8 @@ from sound import WAVE
 from pitchpoint.analyses.load_limits import load_limits_part
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import Outcome, load_case
-from pitchpoint.views.registry import LOAD_LIMITS
 from pitchpoint.views.section import Page, Paragraph, SectionTable
+from pitchpoint.views.section_registry import LOAD_LIMITS
 
 TABLE = """[gears.limits]
 bending_concentration = 1.5

@@ -9,8 +9,9 @@ import pytest
 from sound import PAIR
 
 from pitchpoint.analyses.along_action import MOTION, MOTIONS, START_UP
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.motion import moving_of, quasi_static
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.core.status import Code
 from pitchpoint.dynamics.steady_motion import steady_motion
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
@@ -18,9 +19,8 @@ from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case
-from pitchpoint.status import Code
-from pitchpoint.views.registry import MOTION as SECTION
 from pitchpoint.views.report import report_page
+from pitchpoint.views.section_registry import MOTION as SECTION
 
 CASE = f"""{PAIR}
 [models]

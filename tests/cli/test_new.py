@@ -20,7 +20,7 @@ from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.template import FAMILIES, sample_tree, template
 from pitchpoint.cases.validation import validate
 from pitchpoint.drive.assembly import ROOM_BETWEEN_PLANETS
-from pitchpoint.duty_cycle.table import DutyTable, HeatTable
+from pitchpoint.duty_cycle.duty_table import DutyTable, HeatTable
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.planetary import PLANETARY

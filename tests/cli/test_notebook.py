@@ -346,16 +346,16 @@ def test_a_design_that_cannot_be_says_why_and_stops_no_other() -> None:
 
 @pytest.mark.whole
 def test_one_that_spoils_all_together_is_computed_apart(monkeypatch: pytest.MonkeyPatch) -> None:
-    from pitchpoint.analyses import designs
+    from pitchpoint.analyses import design_batch
 
-    whole = designs.summaries
+    whole = design_batch.summaries
 
     def summaries(points: Any, *given: Any, **more: Any) -> xr.Dataset:
         if any(float(point.operation.load) == 6.0 for point in points):
             raise pp.ConvergenceError("no balance")
         return whole(points, *given, **more)
 
-    monkeypatch.setattr(designs, "summaries", summaries)
+    monkeypatch.setattr(design_batch, "summaries", summaries)
     found = pp.study(PAIR, {TORQUE: [5.0, 6.0, 7.0]})
     assert [*found.reason.values[1]] == ["", "no balance", ""]
     assert [*np.isnan(found.mean_loss.values[1])] == [False, True, False]

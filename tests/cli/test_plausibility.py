@@ -9,7 +9,7 @@ import pytest
 from sound import PAIR, quick_first
 
 from pitchpoint import cli
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.runs import jobs
 from pitchpoint.views.show import number_text
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from sound import PAIR
 
-from pitchpoint.analyses.films import FILM
-from pitchpoint.cases.inputs import resolved
+from pitchpoint.analyses.solved_films import FILM
 from pitchpoint.cases.laws import FRICTION
+from pitchpoint.cases.resolved_inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cli import main
 from pitchpoint.lubrication.ehl.model import FilmModel

@@ -17,7 +17,7 @@ from pitchpoint.analyses.vibration import _excited, stiffness_part, vibrating_of
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import BRIEF, as_doubt
+from pitchpoint.core.doubts import BRIEF, as_doubt
 from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.errors import InputError

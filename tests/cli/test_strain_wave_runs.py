@@ -12,18 +12,18 @@ from documentation import block
 from sound import PAIR, WAVE
 
 import pitchpoint as pp
-from pitchpoint import programs
 from pitchpoint.analyses.running import BANDS
 from pitchpoint.cases.built import ALONE, BEARING_FREE, LACKING, TEETH_ALONE
 from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
+from pitchpoint.core import programs
 from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, Progress, open_outcomes
 from pitchpoint.views import show
-from pitchpoint.views.registry import TORSION
 from pitchpoint.views.screen import head
+from pitchpoint.views.section_registry import TORSION
 from pitchpoint.views.sections.answer import operation_summary
 from pitchpoint.views.sections.beside import running_rows, starting_answer
 from pitchpoint.views.sections.kinematic_error import error_rows, kinematic_error_answer

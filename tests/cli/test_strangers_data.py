@@ -25,8 +25,8 @@ import sound
 import xarray as xr
 
 from pitchpoint import Case, cli, double_precision, run, study
-from pitchpoint.analyses import figures
-from pitchpoint.analyses.films import (
+from pitchpoint.analyses import main_figures
+from pitchpoint.analyses.solved_films import (
     _BY_FILM_LAW,
     _BY_LAW,
     FILM,
@@ -38,12 +38,12 @@ from pitchpoint.analyses.films import (
 from pitchpoint.cases.document import read_tables
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.cases.record import Manifest, Record
+from pitchpoint.core.plain_files import content, digest, digest_of
 from pitchpoint.dynamics.energy import relative_closure
 from pitchpoint.errors import InputError
 from pitchpoint.exports.evaluator import evaluator
 from pitchpoint.exports.files import export
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
-from pitchpoint.plain_files import content, digest, digest_of
 from pitchpoint.results import store
 from pitchpoint.results.store import load
 from pitchpoint.runs.run import Outcome, uncomputed_manifests
@@ -146,7 +146,7 @@ def loss_map(text: str) -> xr.Dataset:
             "locked": (dims, np.zeros(losses.shape, bool)),
             "largest_holding_torque": ((dims[0], dims[1], dims[3]), np.ones((1, 3, 1))),
             "self_locking": ((dims[0], dims[1], dims[3]), np.zeros((1, 3, 1), bool)),
-            **{name: ("law", [0.1]) for name in (*figures.ERRORS, "mean_interpolation_error")},
+            **{name: ("law", [0.1]) for name in (*main_figures.ERRORS, "mean_interpolation_error")},
             "mean_input_torque": ((), 1.0, told),
         },
         {

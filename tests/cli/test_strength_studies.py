@@ -8,7 +8,7 @@ import pytest
 from rated_case import EXAMPLES, PAIR, RATED, SPEED, computed, strength_of
 
 import pitchpoint as pp
-from pitchpoint.analyses.figures import RATING
+from pitchpoint.analyses.main_figures import RATING
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.tooth_life import tooth_life
 from pitchpoint.cases.variant import Variant

@@ -11,15 +11,15 @@ import pytest
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Unasked
+from pitchpoint.analyses.analysis_registry import TORSION
 from pitchpoint.analyses.cycle import CYCLE
-from pitchpoint.analyses.registry import TORSION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.ellipse import hamrock_brewe_1983
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.gears.families import sample_of
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.runs.run import Outcome
-from pitchpoint.status import Code
 from pitchpoint.views.sections.answer import teeth_rows
 
 SAMPLE = tomllib.loads(Path(sample_of(TorusGears)).read_text("utf-8"))

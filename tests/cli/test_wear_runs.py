@@ -16,9 +16,9 @@ from sound import PAIR, quick_first
 from pitchpoint import cli
 from pitchpoint.analyses import wear_course
 from pitchpoint.analyses.along_action import STIFFNESS
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.wear import WEAR
-from pitchpoint.doubts import doubts_of
+from pitchpoint.core.doubts import doubts_of
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
 from pitchpoint.results.store import load
@@ -26,9 +26,9 @@ from pitchpoint.runs import run as running
 from pitchpoint.runs.catalogue import figures_by_law
 from pitchpoint.runs.run import Outcome, load_case, uncomputed_manifests
 from pitchpoint.views.figures import Panel
-from pitchpoint.views.registry import WEAR as SECTION
 from pitchpoint.views.report import report_page
 from pitchpoint.views.section import Page
+from pitchpoint.views.section_registry import WEAR as SECTION
 from pitchpoint.wear import history
 
 MODELS = """

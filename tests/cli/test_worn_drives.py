@@ -15,7 +15,7 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses import wear_course
 from pitchpoint.analyses.along_action import STIFFNESS
-from pitchpoint.analyses.registry import ANALYSES, TORSION
+from pitchpoint.analyses.analysis_registry import ANALYSES, TORSION
 from pitchpoint.analyses.wear import WEAR
 from pitchpoint.contact.worn import FLATTEST, Worn
 from pitchpoint.efficiency.quasi_static import contacts_at

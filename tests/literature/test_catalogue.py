@@ -19,8 +19,8 @@ from scipy.special import ellipe, ellipk
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.library import find_case
+from pitchpoint.cases.resolved_inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.efficiency.quasi_static import Operation, cycle, engagement
 from pitchpoint.efficiency.running_torque import torques_at_rest
@@ -28,7 +28,7 @@ from pitchpoint.efficiency.summary import engaged
 from pitchpoint.gears.strain_wave.ball_bearing import Balls
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.in_series import Behind
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wind_up

@@ -19,17 +19,17 @@ from pitchpoint.analyses.comparison import compare
 from pitchpoint.analyses.studies import readings_of
 from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.citations import citation_text
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.lubrication.friction_coefficient import xu_2007
 from pitchpoint.lubrication.rolling_resistance import wu_cheng_1991
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.publication_registry import PUBLICATIONS
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import Outcome, compare_case
-from pitchpoint.status import Code
-from pitchpoint.views.registry import FORMULAS
 from pitchpoint.views.section import Page
+from pitchpoint.views.section_registry import FORMULAS
 
 FORMULAS_BESIDE = PUBLICATIONS[TREE["source"]].beside[0]
 VARIANTS = ("as_published", "physical", "hertz", "standard")

@@ -9,7 +9,7 @@ from pitchpoint._jax import jax
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.published.liu_xiong_torus import printed
-from pitchpoint.published.liu_xiong_torus.motion import torus_motion
+from pitchpoint.published.liu_xiong_torus.printed_motion import torus_motion
 
 # ------------------------------------------------------------------ the motion
 

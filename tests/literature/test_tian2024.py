@@ -15,9 +15,9 @@ from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
-from pitchpoint.loading.registry import LoadSharing
+from pitchpoint.loading.loading_registry import LoadSharing
 from pitchpoint.published.publication import ReadingPoint
-from pitchpoint.published.tian2024.path import readings
+from pitchpoint.published.tian2024.pair_on_path import readings
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.jobs import jobs
 
@@ -156,7 +156,7 @@ def test_courses_of_a_pair_follow_the_equations():
 
 
 def test_a_reading_of_the_paper_is_not_in_the_library():
-    from pitchpoint.lubrication.registry import LAWS
+    from pitchpoint.lubrication.lubrication_registry import LAWS
 
     assert not [law.name for law in LAWS if "tian" in law.name]
 

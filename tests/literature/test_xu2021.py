@@ -28,19 +28,19 @@ from pitchpoint.materials.fluid import Fluid
 from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.xu2021 import readings as of_case
 from pitchpoint.published.xu2021 import zone
-from pitchpoint.published.xu2021.films import (
-    ToothFilms,
-    _across,
-    _late_gain,
-    _peaks,
-    load_over_film_step,
-)
 from pitchpoint.published.xu2021.printed import (
     pressure_viscosity,
     printed_count,
     printed_viscosity,
     relative_radius,
     viscosity,
+)
+from pitchpoint.published.xu2021.zone_films import (
+    ToothFilms,
+    _across,
+    _late_gain,
+    _peaks,
+    load_over_film_step,
 )
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import compare_case

@@ -12,20 +12,20 @@ from zhao2022_in_print import NAME, STEP, TREE, VARIANTS, built, case, readings
 from pitchpoint.analyses.comparison import compare
 from pitchpoint.cases.document import leaves, resolve
 from pitchpoint.citations import citation_text
+from pitchpoint.core.status import Code
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.zhao2022 import printed
-from pitchpoint.published.zhao2022.publication import PUBLICATION
-from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear, StatedContact
-from pitchpoint.published.zhao2022.wear import (
+from pitchpoint.published.zhao2022.flexspline_wear import (
     Strips,
     march,
     march_cycles,
     march_to_severe_wear,
     strips_of,
 )
+from pitchpoint.published.zhao2022.publication import PUBLICATION
+from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear, StatedContact
 from pitchpoint.results.target_rows import counts
-from pitchpoint.status import Code
 
 KAPPA = 4.31e-18
 WEAR = (

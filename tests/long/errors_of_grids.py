@@ -26,8 +26,8 @@ from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.layout import laid_out
+from pitchpoint.lubrication.ehl.patch.patch_films import PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.solve import HEAVY, Films, solve_lines
 from pitchpoint.materials.fluid import Fluid
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import jax.monitoring
 
 from pitchpoint._jax import double_precision
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases import library
 from pitchpoint.errors import PitchpointError
 from pitchpoint.exports.files import EVALUATOR, export

@@ -13,7 +13,7 @@ import numpy as np
 
 from pitchpoint.contact.end_profiles import crowned
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, finite_line
-from pitchpoint.lubrication.ehl.patch.films import solve_patch
+from pitchpoint.lubrication.ehl.patch.patch_films import solve_patch
 from pitchpoint.lubrication.ehl.patch.transient import PatchMoment, march_patches
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.materials.fluid import Fluid

@@ -26,7 +26,7 @@ import psutil
 import xarray as xr
 
 import pitchpoint as pp
-from pitchpoint.analyses.designs import TOGETHER
+from pitchpoint.analyses.design_batch import TOGETHER
 
 PAIR: dict[str, Any] = {
     "gears": {

@@ -13,13 +13,13 @@ from collections import Counter
 import numpy as np
 from scipy.stats import qmc
 
+from pitchpoint.core.status import Code
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.status import Code
 
 LOW = (0.1e9, 0.01, 1e-3, 5e-3, 0.2)
 HIGH = (1.8e9, 20.0, 1.0, 0.5, 6.0)

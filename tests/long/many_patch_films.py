@@ -20,6 +20,7 @@ from pitchpoint._jax import array
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.end_profiles import crowned
 from pitchpoint.contact.hertz import line_half_width
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import WIDE
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
@@ -28,7 +29,6 @@ from pitchpoint.lubrication.ehl.patch.solve import solve, touches_dry
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.programs import program
 
 LOW = (0.1e9, 0.01, 1e-3, 5e-3, 0.2)
 HIGH = (1.8e9, 20.0, 1.0, 0.5, 20.0)

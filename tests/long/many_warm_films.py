@@ -14,6 +14,7 @@ import numpy as np
 from many_line_films import ALPHA, HIGH, LOW, MODULUS, SEED
 from scipy.stats import qmc
 
+from pitchpoint.core.status import Code
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.solve import solve_lines
@@ -22,7 +23,6 @@ from pitchpoint.lubrication.film_thickness import moes_1992
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials import solids
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.status import Code
 
 LEAST, MOST = (*LOW, 0.01), (*HIGH, 2.5)
 

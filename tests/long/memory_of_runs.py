@@ -28,7 +28,7 @@ def taken(name: str = "VmRSS") -> int:
 def main(names: list[str]) -> int:
     with tempfile.TemporaryDirectory() as empty:
         os.environ["XDG_CACHE_HOME"] = empty
-        from pitchpoint import programs  # its cache is chosen as it is imported
+        from pitchpoint.core import programs  # its cache is chosen as it is imported
         from pitchpoint.runs.run import run_case
 
         start = taken()

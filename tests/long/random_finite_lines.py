@@ -23,7 +23,7 @@ from pitchpoint import double_precision
 from pitchpoint.contact.end_profiles import crowned
 from pitchpoint.contact.hertz import line_half_width
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, finite_line
-from pitchpoint.lubrication.ehl.patch.films import solve_patch
+from pitchpoint.lubrication.ehl.patch.patch_films import solve_patch
 from pitchpoint.materials.fluid import Fluid
 
 LENGTHS = (10.0, 54.0)

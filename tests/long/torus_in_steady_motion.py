@@ -4,11 +4,11 @@ import numpy as np
 from torus_in_print import read
 
 from pitchpoint.cases.library import find_case
+from pitchpoint.core.status import Code
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.published.liu_xiong_torus import steady
 from pitchpoint.results.target_rows import counts
 from pitchpoint.runs.run import compare_case
-from pitchpoint.status import Code
 
 
 def test_rows_of_the_corrected_motion_miss_where_flanks_would_pull_and_where_they_ring():

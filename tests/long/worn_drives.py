@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.runs.run import run_case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import (
@@ -20,9 +22,7 @@ from pitchpoint.gears.strain_wave.design import (
     build_strain_waves,
     designed_strain_wave,
 )
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
-from pitchpoint.programs import program
-from pitchpoint.status import Code
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
 
 RACK = {"module": 2e-3, "pressure_angle": radians(20.0), "face_width": 18e-3, "least_tip": 0.3}
 TEETH = np.array([[23, 61], [10, 61], [18, 36], [18, 36], [10, 40], [20, -70], [23, 61], [18, 36]])

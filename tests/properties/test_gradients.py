@@ -19,11 +19,11 @@ from pitchpoint.efficiency.gradients import (
     ripple_gradient,
 )
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
-from pitchpoint.gears.bodies import completed
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.gears.mesh_bodies import completed
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.grid import PeriodGrid
+from pitchpoint.dynamics.moving_bodies import Body
 from pitchpoint.dynamics.passage import sampled
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import periodic_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.families import built_gears
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

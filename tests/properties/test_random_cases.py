@@ -18,10 +18,10 @@ from pitchpoint.cases.built import Built
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.variant import Variant
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.table import WIDTH
+from pitchpoint.gears.gears_table import WIDTH
 from pitchpoint.input.kinds import SPEED, TEMPERATURE, TORQUE
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import ROLLING_RESISTANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.material_tables import (
     ALPHA,

@@ -8,16 +8,16 @@ import pytest
 from sound import pair, quick_first
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.status import Code
 from pitchpoint.dynamics.grid import PeriodGrid
-from pitchpoint.dynamics.vibration import Vibrating, excited, steady, transmission_figures
+from pitchpoint.dynamics.pair_vibration import Vibrating, excited, steady, transmission_figures
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.gears.bodies import plain_inertia
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.gears.mesh_bodies import plain_inertia
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import Solid
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.status import Code
 
 STEEL = Solid(young=206e9, poisson=0.3, density=7850.0)
 PA66 = Solid(young=3.54e9, poisson=0.35, density=1140.0)

@@ -17,10 +17,10 @@ import pytest
 from pitchpoint._jax import jax, jnp
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle
 from pitchpoint.gears.strain_wave.design import build_strain_wave
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.wind_up import wind_up
-from pitchpoint.lubrication.registry import LAWS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import LAWS, ROLLING_RESISTANCE
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.surfaces import Roughness
 

@@ -15,7 +15,7 @@ from sound import PAIR
 
 from pitchpoint.analyses import studies
 from pitchpoint.analyses.analysis import Analysis, Unasked
-from pitchpoint.analyses.registry import ANALYSES, register
+from pitchpoint.analyses.analysis_registry import ANALYSES, register
 from pitchpoint.cases.library import find_case
 from pitchpoint.cases.variant import Variant
 from pitchpoint.cli import main
@@ -36,7 +36,6 @@ from pitchpoint.runs.run import (
     uncomputed_manifests,
 )
 from pitchpoint.views.figures import PALETTE, Figure, Key, Panel, display, layout, legend_line
-from pitchpoint.views.registry import SECTIONS, register_section
 from pitchpoint.views.report import report_page
 from pitchpoint.views.screen import head, screen_value
 from pitchpoint.views.section import (
@@ -48,6 +47,7 @@ from pitchpoint.views.section import (
     Section,
     SectionTable,
 )
+from pitchpoint.views.section_registry import SECTIONS, register_section
 
 DOCS = Path(__file__).parents[2] / "docs"
 SWEPT = f"""{PAIR}

@@ -8,7 +8,7 @@ import bank
 import pytest
 from sound import PAIR
 
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.teeth import TEETH
 
 

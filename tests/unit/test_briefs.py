@@ -9,7 +9,7 @@ import pytest
 
 import pitchpoint
 from pitchpoint.analyses.caveats import law_sentences, range_left
-from pitchpoint.doubts import (
+from pitchpoint.core.doubts import (
     BRIEF,
     Doubt,
     as_doubt,
@@ -20,7 +20,7 @@ from pitchpoint.doubts import (
     stored,
 )
 from pitchpoint.lubrication.applicability import Limited
-from pitchpoint.lubrication.registry import ASPERITY_LOAD, FILM_THICKNESS, LAWS
+from pitchpoint.lubrication.lubrication_registry import ASPERITY_LOAD, FILM_THICKNESS, LAWS
 
 PACKAGE = Path(pitchpoint.__file__).parent
 LINE = BRIEF + len("Doubtful: ")
@@ -54,7 +54,7 @@ def shown(call: ast.Call) -> ast.expr:
 CALLS = {
     place: call
     for path in PACKAGE.rglob("*.py")
-    if path.name != "doubts.py" or path.parent != PACKAGE
+    if path != PACKAGE / "core" / "doubts.py"
     for place, call in doubts_in(path)
 }
 

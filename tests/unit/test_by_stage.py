@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.results.by_stage import by_stage, of_stage, stages_of
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.store import dataset

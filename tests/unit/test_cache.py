@@ -10,7 +10,8 @@ import jax
 import numpy as np
 import pytest
 
-from pitchpoint import _jax, kept
+from pitchpoint import _jax
+from pitchpoint.core import kept
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Outcome
-from pitchpoint.views.registry import SECTIONS
+from pitchpoint.views.section_registry import SECTIONS
 
 
 def test_a_sweep_shows_every_law_by_name():

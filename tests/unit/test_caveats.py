@@ -11,7 +11,7 @@ import pytest
 from pitchpoint.analyses import caveats, four_quadrants
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import SolidInUse, failures
-from pitchpoint.doubts import fails, moves, ranked_doubts
+from pitchpoint.core.doubts import fails, moves, ranked_doubts
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.applicability import limits_words

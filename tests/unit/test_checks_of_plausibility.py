@@ -14,11 +14,11 @@ from pitchpoint.analyses.plausibility import OF_CONTACTS, OF_RESULTS, implausibl
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.solids import BY_VALUE, SolidInUse
 from pitchpoint.citations import citation_text
-from pitchpoint.doubts import Checks
+from pitchpoint.core.doubts import Checks
 from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.lubrication.ehl.doubts import OF_LINE_FILMS, OF_LINE_INPUTS
-from pitchpoint.lubrication.ehl.patch.films import OF_PATCH_FILMS, OF_PATCHES
-from pitchpoint.lubrication.registry import BOUNDARY
+from pitchpoint.lubrication.ehl.patch.patch_films import OF_PATCH_FILMS, OF_PATCHES
+from pitchpoint.lubrication.lubrication_registry import BOUNDARY
 from pitchpoint.materials import solids
 from pitchpoint.materials.data import Datum
 

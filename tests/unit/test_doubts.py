@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from pitchpoint.cases.built import TEETH_ALONE
-from pitchpoint.doubts import (
+from pitchpoint.core.doubts import (
     FELT,
     LEFT_OUT,
     Doubt,

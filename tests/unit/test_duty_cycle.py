@@ -12,17 +12,17 @@ from duty_map import RATIO, WARM, table
 from scipy.integrate import solve_ivp
 
 from pitchpoint.analyses.tooth_life import cycles_on_curve, cycles_to_failure, load_classes
-from pitchpoint.cases.duty import _heating
-from pitchpoint.doubts import BRIEF, doubts_of
-from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
+from pitchpoint.cases.built_duty import _heating
+from pitchpoint.core.doubts import BRIEF, doubts_of
+from pitchpoint.duty_cycle.duty_dataset import Heating, duty_dataset
+from pitchpoint.duty_cycle.duty_table import HeatTable
 from pitchpoint.duty_cycle.energy import driver_course, duty_energies, mean_load
 from pitchpoint.duty_cycle.first_failure import WITHOUT_LIFE, first_failure
-from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import LoadHistory, load_history, load_steps
 from pitchpoint.duty_cycle.life import BALL, ROLLER, SCATTER, RatedLife, system_life
 from pitchpoint.duty_cycle.motor import COPPER, Motor
 from pitchpoint.duty_cycle.recorded_lives import recorded_lives
-from pitchpoint.duty_cycle.table import HeatTable
+from pitchpoint.duty_cycle.thermal_network import ThermalNetwork
 from pitchpoint.efficiency.loss_table import LOCKED
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.results.by_stage import by_stage

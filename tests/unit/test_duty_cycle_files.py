@@ -9,9 +9,9 @@ import pytest
 from duty_map import WARM, table
 
 from pitchpoint.duty_cycle.energy import driver_course
-from pitchpoint.duty_cycle.heat import ThermalNetwork
 from pitchpoint.duty_cycle.history import history_of_table, load_history, load_steps, read_history
 from pitchpoint.duty_cycle.motor import Motor
+from pitchpoint.duty_cycle.thermal_network import ThermalNetwork
 from pitchpoint.efficiency.loss_table import LOCKED
 from pitchpoint.errors import InputError
 

@@ -5,9 +5,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from pitchpoint.factored import Factored, factored_product, log, product_array, scaled, square_root
+from pitchpoint.core.factored import (
+    Factored,
+    factored_product,
+    log,
+    product_array,
+    scaled,
+    square_root,
+)
 from pitchpoint.lubrication.conditions import law_arguments
-from pitchpoint.lubrication.registry import LAWS
+from pitchpoint.lubrication.lubrication_registry import LAWS
 
 ROW = jnp.asarray([[0.5, 2.0, 3.0]])
 COLUMN = jnp.asarray([[0.1], [7.0]])

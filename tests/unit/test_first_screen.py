@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from screens import REPORT, faults_of_the_screen, screen
 
 from pitchpoint.cases.built import ALONE, LACKING
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs import run
 from pitchpoint.runs.run import Outcome
@@ -30,8 +30,8 @@ from pitchpoint.views.first_screen import (
     swept_beside,
 )
 from pitchpoint.views.point import by_bodies, by_members, member_names, of_stage_by_bodies
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import KeyFigure, Page, SectionTable, key_figures, variant_warnings
+from pitchpoint.views.section_registry import in_order
 from pitchpoint.views.sections import answer, beside
 from pitchpoint.views.sections.inspection import INSPECTION
 from pitchpoint.views.sections.strength import strength_rows

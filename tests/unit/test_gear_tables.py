@@ -14,8 +14,8 @@ from sound import WAVE
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
 from pitchpoint.cases.document import resolve
-from pitchpoint.cases.inputs import resolved
 from pitchpoint.cases.keys import quantity_at
+from pitchpoint.cases.resolved_inputs import resolved
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
@@ -23,19 +23,19 @@ from pitchpoint.contact.surface import Waves
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.gears.nominal_motion import mesh_ends
 from pitchpoint.gears.pairs import largest_radius
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.rigs.twin_disc import TwinDisc
 from pitchpoint.gears.strain_wave.design import check_strain_wave
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.quantities import SIValue
 from pitchpoint.loading.reactions import InnerBearing
 from pitchpoint.lubrication.applicability import why_inapplicable
-from pitchpoint.lubrication.registry import LAWS
+from pitchpoint.lubrication.lubrication_registry import LAWS
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.views.inputs import printed_input_rows
 

@@ -24,16 +24,16 @@ from pitchpoint.analyses.vibration import (
     vibrating_of,
 )
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.inputs import resolved
+from pitchpoint.cases.resolved_inputs import resolved
 from pitchpoint.cases.variant import Variant
 from pitchpoint.contact.deviations import ToothDeviations
+from pitchpoint.core.status import Code, Status
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.runs.jobs import jobs
-from pitchpoint.status import Code, Status
 from pitchpoint.views.inputs import printed_input_rows
 
 TREE = tomllib.loads(PAIR)

@@ -11,7 +11,7 @@ import pytest
 from packaging.requirements import Requirement
 
 import pitchpoint
-from pitchpoint import pages
+from pitchpoint.core import pages
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))

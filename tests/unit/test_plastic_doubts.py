@@ -6,8 +6,8 @@ from math import pi, radians
 import pytest
 
 from pitchpoint.cases.solids import EXPANSION, ROOM, SolidInUse, fitted_on_steel, grown
-from pitchpoint.doubts import as_doubt
-from pitchpoint.gears.cylindrical.inspection import Toothing
+from pitchpoint.core.doubts import as_doubt
+from pitchpoint.gears.cylindrical.drawing_dimensions import Toothing
 from pitchpoint.materials import solids
 
 STEEL = SolidInUse(solids.find("steel"), solids.find("steel").build(), 350.0)

@@ -13,11 +13,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from pitchpoint import programs
+from pitchpoint.core import programs
+from pitchpoint.core.programs import Program, program
 from pitchpoint.lubrication.friction_coefficient import xu_2007
-from pitchpoint.lubrication.registry import LAWS
+from pitchpoint.lubrication.lubrication_registry import LAWS
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.programs import Program, program
 
 
 class Bodies(eqx.Module):
@@ -25,7 +25,9 @@ class Bodies(eqx.Module):
     label: str = eqx.field(static=True)
 
 
-Bodies.__module__ = "pitchpoint.programs"  # as a class of the package, which a later process finds
+Bodies.__module__ = (
+    "pitchpoint.core.programs"  # as a class of the package, which a later process finds
+)
 programs.Bodies = Bodies
 
 TRACED: list[str] = []
@@ -37,7 +39,7 @@ def moved(bodies: Bodies, *, by: float, twice: bool = False) -> dict:
     return {"force": force, "of": (Bodies(force, bodies.label), None, [bodies.label])}
 
 
-moved.__module__ = "pitchpoint.programs"
+moved.__module__ = "pitchpoint.core.programs"
 programs.moved = moved
 
 
@@ -47,7 +49,7 @@ def told_by_the_host(bodies: Bodies) -> Bodies:
     return Bodies(mass, bodies.label)
 
 
-told_by_the_host.__module__ = "pitchpoint.programs"
+told_by_the_host.__module__ = "pitchpoint.core.programs"
 programs.told_by_the_host = told_by_the_host
 
 
@@ -98,7 +100,7 @@ def test_code_that_counts_is_that_of_the_function_and_of_its_arguments(kept, mon
     given = {"name": "pitchpoint.units:torque", "law": xu_2007, "of": [Lubricant]}
     paths = {one._path(((Bodies(jnp.arange(3.0), "a"),), given)) for _ in range(2)}
     others = ["pitchpoint.lubrication.friction_coefficient", "pitchpoint.materials.lubricants"]
-    assert asked == [[*others, "pitchpoint.programs"]] * 2
+    assert asked == [[*others, "pitchpoint.core.programs"]] * 2
     assert len(paths) == 2
 
 

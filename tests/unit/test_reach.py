@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import pitchpoint
-from pitchpoint.reach import Sources
+from pitchpoint.core.reach import Sources
 
 SOURCE = Path(pitchpoint.__file__).parent
 VIEW = "views/picture.py"
@@ -39,7 +39,9 @@ def imports(path: Path) -> Iterator[str]:
 
 FILES = {name_of(path, SOURCE): path for path in SOURCE.rglob("*.py")}
 PROGRAMS = {
-    name for name, path in FILES.items() if "pitchpoint.programs import" in path.read_text("utf-8")
+    name
+    for name, path in FILES.items()
+    if "pitchpoint.core.programs import" in path.read_text("utf-8")
 }
 """Modules with programs."""
 IMPORTS = {name: FILES.keys() & {*imports(path)} - {"pitchpoint"} for name, path in FILES.items()}

@@ -8,7 +8,7 @@ import pytest
 import pitchpoint
 from pitchpoint.cases.library import case_names, case_path
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.registry import LAWS
+from pitchpoint.lubrication.lubrication_registry import LAWS
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.registry import (
     Registry,

@@ -15,7 +15,7 @@ from plotly.offline import get_plotlyjs
 from reported import IDLE, PUBLISHED, TITLE, WHEEL, Outcomes, Words, computed
 from sound import quick_first
 
-from pitchpoint.doubts import stored
+from pitchpoint.core.doubts import stored
 from pitchpoint.runs.run import Outcome
 from pitchpoint.units import convert, kind_of, kinds, parse, units_of
 from pitchpoint.views import show

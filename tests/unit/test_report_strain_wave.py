@@ -29,7 +29,7 @@ from strain_wave_outcome import (
 
 from pitchpoint.gears.strain_wave import MEMBERS
 from pitchpoint.results.by_stage import by_stage
-from pitchpoint.runs.designs import main_results
+from pitchpoint.runs.compared_designs import main_results
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.explorer import Reader
@@ -37,18 +37,18 @@ from pitchpoint.views.figures import Figure, Panel, curves
 from pitchpoint.views.first_screen import aligned
 from pitchpoint.views.outlines import simplified
 from pitchpoint.views.point import operating_point, period_of
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import report_page
 from pitchpoint.views.section import KeyFigure, Page, key_figures, panels
+from pitchpoint.views.section_registry import in_order
 from pitchpoint.views.sections.answer import teeth_rows
 from pitchpoint.views.sections.arc import ARC, arc_panel, wave_losses, wave_sentence
 from pitchpoint.views.sections.beside import drag_panel, starting_answer
 from pitchpoint.views.sections.cycle import cycle_panel
-from pitchpoint.views.sections.drive import DRIVE, loaded_arcs, picture, wave_dimensions
 from pitchpoint.views.sections.kinematic_error import kinematic_error_answer, kinematic_error_panels
 from pitchpoint.views.sections.loss_map import efficiency_panel
 from pitchpoint.views.sections.passing import gap_panel
 from pitchpoint.views.sections.torsion import torsion_answer, torsion_facts, torsion_panels
+from pitchpoint.views.sections.wave_drive import DRIVE, loaded_arcs, picture, wave_dimensions
 
 
 @pytest.fixture(scope="module")

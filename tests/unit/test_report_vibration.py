@@ -29,9 +29,9 @@ from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Figure, Panel, continued
 from pitchpoint.views.path import contact_path
-from pitchpoint.views.registry import STIFFNESS, WEAR
 from pitchpoint.views.report import report_page
 from pitchpoint.views.section import Page, SectionTable, panels
+from pitchpoint.views.section_registry import STIFFNESS, WEAR
 from pitchpoint.views.sections.cycle import CYCLE
 from pitchpoint.views.sections.design_chart import design_charts
 from pitchpoint.views.sections.joint import joint_panel

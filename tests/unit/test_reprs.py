@@ -9,7 +9,7 @@ from sound import quick_first
 
 import pitchpoint as pp
 from pitchpoint.cases.library import case_names
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.materials.lubricants import find
 from pitchpoint.notebook.figures import Plots
 from pitchpoint.results.labelled import flat_attributes

@@ -10,7 +10,7 @@ from pitchpoint.efficiency import profile as profiles
 from pitchpoint.efficiency import rows, summary
 from pitchpoint.efficiency.profile import profile
 from pitchpoint.efficiency.quasi_static import cycle
-from pitchpoint.lubrication.registry import FILM_THICKNESS
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS
 
 PAIR = {
     "gears": {"teeth": [23, 61], "module": "2 mm", "face_width": "20 mm"},

@@ -5,7 +5,7 @@ import xarray as xr
 from scipy.stats import qmc
 
 import pitchpoint as pp
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.runs.sensitivity import indices_of
 
 

@@ -10,7 +10,7 @@ from jaxtyping import TypeCheckError
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
 from pitchpoint.contact.hertz import line_pressure
-from pitchpoint.factored import factored_product
+from pitchpoint.core.factored import factored_product
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959
 

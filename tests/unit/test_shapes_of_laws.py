@@ -10,7 +10,7 @@ from pitchpoint.cases.laws import FRICTION
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.conditions import evaluate, law_arguments, shape_of
-from pitchpoint.lubrication.registry import FILM_THICKNESS, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS, ROLLING_RESISTANCE
 
 LAWS = (*FRICTION.values(), *FILM_THICKNESS.values(), *ROLLING_RESISTANCE.values())
 LINES = {"line_load", "half_width", "reference_line_load"}

@@ -19,7 +19,7 @@ from pitchpoint.sizing.front import CHUNK, non_dominated, representatives
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
-from pitchpoint.sizing.table import SIZED_FAMILIES, TASK_TABLE, Task, read_task, task_template
+from pitchpoint.sizing.task_table import SIZED_FAMILIES, TASK_TABLE, Task, read_task, task_template
 
 TASK = {"torque": "60 N m", "ratio": 60, "speed": "30 rpm", "life": "5000 h"}
 

@@ -17,7 +17,7 @@ import xarray as xr
 
 import pitchpoint as pp
 from pitchpoint import cli
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.errors import InputError, PitchpointError
 from pitchpoint.results import store
 from pitchpoint.results.netcdf import encode

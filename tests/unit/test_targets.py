@@ -12,7 +12,7 @@ from pitchpoint.cases.library import case_names, find_case
 from pitchpoint.cases.study_tables import Target
 from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.publication_registry import PUBLICATIONS
 from pitchpoint.results.store import dataset
 from pitchpoint.results.target_rows import TargetRow, verdict_sentence
 from pitchpoint.runs.run import uncomputed_manifests

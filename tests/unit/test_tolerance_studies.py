@@ -12,7 +12,7 @@ from pitchpoint._jax import double_precision
 from pitchpoint.cases.validation import validate
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
-from pitchpoint.gears.cylindrical.inspection import Toothing, backlash
+from pitchpoint.gears.cylindrical.drawing_dimensions import Toothing, backlash
 from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.runs.layouts import layout_of

@@ -13,7 +13,7 @@ import pytest
 
 from pitchpoint import units
 from pitchpoint.errors import InputError
-from pitchpoint.gears.table import HELIX
+from pitchpoint.gears.gears_table import HELIX
 from pitchpoint.input.kinds import HARDNESS
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.units import UnitError, convert, kind_of, kinds, parse, si_unit, units_of

@@ -12,7 +12,7 @@ from pages import payload
 from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, Words, computed, shown
 
 from pitchpoint.cases.built import ALONE
-from pitchpoint.doubts import as_doubt, stored
+from pitchpoint.core.doubts import as_doubt, stored
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.runs.run import Outcome, open_outcomes, run_case
 from pitchpoint.views import show

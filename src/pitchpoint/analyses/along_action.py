@@ -6,7 +6,8 @@ from typing import Any
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Unasked
-from pitchpoint.analyses.figures import (
+from pitchpoint.analyses.lacking import rigid
+from pitchpoint.analyses.main_figures import (
     OF_CROSSING,
     OF_MOTION,
     OF_START,
@@ -14,7 +15,6 @@ from pitchpoint.analyses.figures import (
     by_torque,
     numbers,
 )
-from pitchpoint.analyses.lacking import rigid
 from pitchpoint.cases.built import Built
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has

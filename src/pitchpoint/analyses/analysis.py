@@ -11,7 +11,7 @@ from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import TRAIN_PERIOD, BuiltDrive, Ready
 from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import Doubt, doubts_of, stored
+from pitchpoint.core.doubts import Doubt, doubts_of, stored
 from pitchpoint.errors import InputError
 from pitchpoint.registry import Deferred
 from pitchpoint.results.by_stage import Label, as_label, by_stage, of_stage, stages_of

@@ -11,22 +11,22 @@ import numpy as np
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.laws import FRICTION
-from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt, fails, in_percent, reworded
+from pitchpoint.core.doubts import GUESSED, WITHHELD, Checks, Doubt, fails, in_percent, reworded
+from pitchpoint.core.status import Code
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import largest_radius, touching
 from pitchpoint.input.kinds import SPEED, TEMPERATURE
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.lubrication.applicability import Limited, limits_words
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.lubrication.ehl.ehl_registry import ISOTHERMAL
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
-from pitchpoint.lubrication.registry import (
+from pitchpoint.lubrication.lubrication_registry import (
     BOUNDARY,
     ROLLING_RESISTANCE,
     USUAL_BOUNDARY,
     FrictionLaw,
 )
-from pitchpoint.status import Code
 
 __all__ = [
     "OF_CYCLES",

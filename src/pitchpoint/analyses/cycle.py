@@ -16,9 +16,9 @@ from pitchpoint.analyses.caveats import (
 from pitchpoint.analyses.plausibility import implausible
 from pitchpoint.analyses.summaries import profiles
 from pitchpoint.cases.built import Built
+from pitchpoint.core.status import Code, locked_or_lost, solve_summary
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, locked_or_lost, solve_summary
 
 __all__ = [
     "CYCLE",

@@ -19,14 +19,14 @@ from pitchpoint.analyses.four_quadrants import (
 from pitchpoint.analyses.strength import rating_inputs
 from pitchpoint.analyses.tooth_life import load_classes, tooth_life
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.cases.duty import DutyInputs, duty_inputs
-from pitchpoint.doubts import doubts_of, fails, stored
-from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
+from pitchpoint.cases.built_duty import DutyInputs, duty_inputs
+from pitchpoint.core.doubts import doubts_of, fails, stored
+from pitchpoint.duty_cycle.duty_dataset import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside, mean_load
-from pitchpoint.duty_cycle.heat import RunawayError
 from pitchpoint.duty_cycle.history import LoadHistory
 from pitchpoint.duty_cycle.life import BALL, RatedBearing
 from pitchpoint.duty_cycle.recorded_lives import recorded_lives
+from pitchpoint.duty_cycle.thermal_network import RunawayError
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown

@@ -9,7 +9,7 @@ import numpy as np
 from pitchpoint.analyses.film_contacts import film_table, patch_grid_of
 from pitchpoint.analyses.whole_contacts import SPAN, Wholes, one_contact, whole_contacts
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.films import course_grid, course_moments
+from pitchpoint.cases.film_choices import course_grid, course_moments
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import Layout, laid_out

@@ -19,6 +19,7 @@ from pitchpoint.analyses.film_contacts import (
 from pitchpoint.analyses.film_cycle import cycle_films
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.height_maps import height_maps
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.gears.nominal_motion import tooth_size
 from pitchpoint.lubrication.ehl.doubts import UNSOLVED
@@ -28,7 +29,6 @@ from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
 
 __all__ = [
     "GRID_ERRORS",

@@ -10,8 +10,9 @@ from jaxtyping import Array
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.films import PATCH_NODES, patch_grid
+from pitchpoint.cases.film_choices import PATCH_NODES, patch_grid
 from pitchpoint.contact.contacts import Contacts, Shape
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.in_turns import balance_under
 from pitchpoint.efficiency.quasi_static import (
     Design,
@@ -30,8 +31,7 @@ from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import usual_nodes
 from pitchpoint.lubrication.groups import load_parameter
-from pitchpoint.lubrication.registry import FILM_THICKNESS, FilmThickness
-from pitchpoint.programs import program
+from pitchpoint.lubrication.lubrication_registry import FILM_THICKNESS, FilmThickness
 
 __all__ = [
     "LEAST",

@@ -10,12 +10,12 @@ from pitchpoint.analyses.caveats import cold_warning, conformal_warning
 from pitchpoint.analyses.film_contacts import film_laws_for_shape, film_model_of, film_table
 from pitchpoint.analyses.film_series import series_figures
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.films import SUMMIT_CONSTANTS
-from pitchpoint.contact.registry import SUMMITS
-from pitchpoint.doubts import REMARKED, Doubt, doubts_of, in_percent, reworded
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH
+from pitchpoint.cases.film_choices import SUMMIT_CONSTANTS
+from pitchpoint.contact.contact_registry import SUMMITS
+from pitchpoint.core.doubts import REMARKED, Doubt, doubts_of, in_percent, reworded
+from pitchpoint.core.status import Code, solve_summary, withheld
+from pitchpoint.lubrication.ehl.ehl_registry import ISOTHERMAL, SMOOTH
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, solve_summary, withheld
 
 __all__ = ["cycle_films"]
 

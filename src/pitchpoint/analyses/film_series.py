@@ -9,8 +9,8 @@ from pitchpoint.analyses.film_contacts import cycle_engagement
 from pitchpoint.analyses.lacking import rigid
 from pitchpoint.analyses.torsion import wound_ups
 from pitchpoint.cases.built import Built
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
-from pitchpoint.status import Code
 
 __all__ = ["check_series", "series_figures"]
 

@@ -14,11 +14,12 @@ from pitchpoint.analyses.film_contacts import film_table
 from pitchpoint.analyses.finite_film import FIELDS
 from pitchpoint.analyses.whole_contacts import whole_contacts
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.films import course_grid
-from pitchpoint.doubts import WITHHELD, Doubt, doubts_of, reworded, worst_of_kinds
+from pitchpoint.cases.film_choices import course_grid
+from pitchpoint.core.doubts import WITHHELD, Doubt, doubts_of, reworded, worst_of_kinds
+from pitchpoint.core.status import Code, solve_summary
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.patch.films import ENDS, Turned
 from pitchpoint.lubrication.ehl.patch.layout import Layout
+from pitchpoint.lubrication.ehl.patch.patch_films import ENDS, Turned
 from pitchpoint.lubrication.ehl.patch.plan import placed_contacts
 from pitchpoint.lubrication.ehl.patch.transient import (
     MarchState,
@@ -27,7 +28,6 @@ from pitchpoint.lubrication.ehl.patch.transient import (
     steady_beside,
 )
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, solve_summary
 
 __all__ = ["further", "joined", "pieces", "squeeze_part"]
 

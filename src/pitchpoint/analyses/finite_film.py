@@ -27,21 +27,21 @@ from pitchpoint.analyses.film_contacts import (
 from pitchpoint.analyses.film_cycle import cycle_films
 from pitchpoint.analyses.whole_contacts import Wholes, in_the_middle, one_contact, whole_contacts
 from pitchpoint.cases.built import Built
-from pitchpoint.doubts import WITHHELD, Doubt, in_percent
+from pitchpoint.core.doubts import WITHHELD, Doubt, in_percent
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.gears.nominal_motion import tooth_size
 from pitchpoint.lubrication.ehl.doubts import GRID, UNKNOWN_GRID
+from pitchpoint.lubrication.ehl.ehl_registry import ISOTHERMAL
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.fields import END_DISTANCES, PatchFilm
-from pitchpoint.lubrication.ehl.patch.films import ENDS, PatchFilms, solve_patch
 from pitchpoint.lubrication.ehl.patch.grid_error import of_patches
 from pitchpoint.lubrication.ehl.patch.heat import PatchTemperatures
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.lubrication.ehl.patch.patch_films import ENDS, PatchFilms, solve_patch
 from pitchpoint.materials.rheology import lorentz_lorenz_1880
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code
 
 __all__ = ["FIELDS", "film_part", "joined", "pieces"]
 

@@ -11,17 +11,17 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
-from pitchpoint.analyses.figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.finer_map import finer_map
 from pitchpoint.analyses.loss_map import film_interpolation_sentence, map_axes, maps
+from pitchpoint.analyses.main_figures import ERRORS, HOLDING, HOLDING_BANDS
 from pitchpoint.analyses.running import creeping_speed, from_rest, has_spread
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.doubts import Doubt, doubts_of, in_percent
+from pitchpoint.core.doubts import Doubt, doubts_of, in_percent
+from pitchpoint.core.status import locked_or_lost, solve_summary
 from pitchpoint.efficiency.loss_table import LOCKED, LossTable
 from pitchpoint.efficiency.operation_tables import LossMap
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, solve_summary
 from pitchpoint.units import degrees_celsius
 
 __all__ = [

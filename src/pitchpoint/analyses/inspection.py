@@ -10,9 +10,8 @@ import xarray as xr
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.teeth import drawing_of
 from pitchpoint.cases.built import Built
-from pitchpoint.doubts import Doubt
-from pitchpoint.gears.bodies import disc
-from pitchpoint.gears.cylindrical.inspection import (
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.gears.cylindrical.drawing_dimensions import (
     Backlash,
     Toothing,
     backlash,
@@ -20,6 +19,7 @@ from pitchpoint.gears.cylindrical.inspection import (
 )
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
 from pitchpoint.gears.cylindrical.table import CylindricalGears, Inspection
+from pitchpoint.gears.mesh_bodies import disc
 from pitchpoint.results.store import dataset
 
 __all__ = ["inspection_of", "inspection_part"]

@@ -12,20 +12,20 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, PieceProgress, silent
 from pitchpoint.analyses.bodies import bodies_of
-from pitchpoint.analyses.figures import numbers
 from pitchpoint.analyses.kinematic_error import deviation_error
+from pitchpoint.analyses.main_figures import numbers
 from pitchpoint.analyses.torsion import engaged_at, kinematic_play, onset_friction, wound_ups
 from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import contact_velocity
-from pitchpoint.doubts import Doubt
-from pitchpoint.dynamics.joint import Joint, Sliding, joint_response
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, solve_summary
 from pitchpoint.dynamics.joint_course import fading, steady_joint_vibration
+from pitchpoint.dynamics.joint_vibration import Joint, Sliding, joint_response
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.wind_up_curve import WindUpCurve
-from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, solve_summary
 
 __all__ = ["joint_figures", "joint_of", "joint_part"]
 

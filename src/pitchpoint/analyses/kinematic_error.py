@@ -11,21 +11,21 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, PieceProgress
-from pitchpoint.analyses.figures import error_ranges, numbers
+from pitchpoint.analyses.main_figures import error_ranges, numbers
 from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Surfaces
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import looping_program, program
+from pitchpoint.core.status import locked_or_lost, solve_summary
 from pitchpoint.gears.family import Turning
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import nominal_motion, phase_sense
 from pitchpoint.loading.compliance import Compliance, compliance
-from pitchpoint.loading.kinematic_error import KinematicError, added_gap, kinematic_error
+from pitchpoint.loading.mesh_kinematic_error import KinematicError, added_gap, kinematic_error
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import looping_program, program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = ["deviation_error", "error_figures", "error_of", "kinematic_error_part"]
 

@@ -7,7 +7,7 @@ from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import touching
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 
 __all__ = [
     "no_bodies",

@@ -8,9 +8,9 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.built import Built
-from pitchpoint.doubts import fails
+from pitchpoint.core.doubts import fails
 from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.load_limits import (
+from pitchpoint.gears.strain_wave.strength_estimates import (
     bearing_life,
     curvature_change,
     face_stress,

@@ -14,7 +14,9 @@ from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.analyses.lacking import untransmitted, without_films
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.doubts import Doubt, doubts_of, in_percent
+from pitchpoint.core.doubts import Doubt, doubts_of, in_percent
+from pitchpoint.core.programs import fast_program, program
+from pitchpoint.core.status import locked_or_lost, solve_summary
 from pitchpoint.efficiency.film_map import FilmMap, film_map
 from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
@@ -30,11 +32,9 @@ from pitchpoint.efficiency.rows import NODES, one_engagement
 from pitchpoint.efficiency.summary import at_points, engaged
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
-from pitchpoint.loading.registry import LoadSharing
-from pitchpoint.lubrication.registry import FrictionLaw
-from pitchpoint.programs import fast_program, program
+from pitchpoint.loading.loading_registry import LoadSharing
+from pitchpoint.lubrication.lubrication_registry import FrictionLaw
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = [
     "LOSS_MAP",

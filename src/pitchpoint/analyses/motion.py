@@ -11,17 +11,19 @@ from jaxtyping import Array, Float
 
 from pitchpoint import units
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE
+from pitchpoint.analyses.main_figures import CAMPBELL, OF_COURSE
 from pitchpoint.analyses.vibration import MOST_RATIO, ORDERS, status_sentences, vibrating_of
 from pitchpoint.cases.built import Built
 from pitchpoint.contact.contacts import contact_velocity
-from pitchpoint.doubts import Doubt
-from pitchpoint.dynamics.bodies import Body, Support, bearing_forces, motor, radial_bearings
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import fast_program, program
+from pitchpoint.core.status import Code, solve_summary
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import Modes, along_action, mean_stiffness, modes
+from pitchpoint.dynamics.moving_bodies import Body, Support, bearing_forces, motor, radial_bearings
 from pitchpoint.dynamics.passage import passage, tabulated
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import MovingMesh
 from pitchpoint.dynamics.steady_motion import Motion, film, periodic_motion
 from pitchpoint.dynamics.system import modal_damping, reduced_mass
@@ -30,11 +32,9 @@ from pitchpoint.dynamics.vibration_tables import MotionTable
 from pitchpoint.efficiency.summary import summarise
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import line_of_action
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import FilmThickness
-from pitchpoint.programs import fast_program, program
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import FilmThickness
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, solve_summary
 
 __all__ = [
     "against_speed_part",

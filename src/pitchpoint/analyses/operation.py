@@ -10,7 +10,8 @@ import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.analyses.caveats import AtWork, why_outside
-from pitchpoint.analyses.figures import (
+from pitchpoint.analyses.lacking import untransmitted
+from pitchpoint.analyses.main_figures import (
     CONTACT,
     MAIN,
     REACTIONS,
@@ -19,12 +20,11 @@ from pitchpoint.analyses.figures import (
     of_operation,
     out_of_range,
 )
-from pitchpoint.analyses.lacking import untransmitted
 from pitchpoint.analyses.plausibility import implausible
 from pitchpoint.analyses.summaries import figures_beside_cycle, profiles, summaries
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
+from pitchpoint.core.doubts import FELT, GUESSED, Doubt, doubts_of, in_percent, in_stage, stored
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.results.store import dataset, describe_variables, without_nan
 from pitchpoint.results.variables import VARIABLES

@@ -12,7 +12,7 @@ from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.torsion import mesh_slopes
 from pitchpoint.cases.built_drive import BuiltTrain
 from pitchpoint.cases.drive_schema import TrainTable
-from pitchpoint.doubts import GUESSED, Doubt
+from pitchpoint.core.doubts import GUESSED, Doubt
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.loading.planets import PinEquivalents, path_stiffness, planet_forces
 from pitchpoint.results.store import dataset

@@ -13,13 +13,13 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.caveats import AtWork, conformal, rolling_share
-from pitchpoint.analyses.figures import laws_hold, why_not
+from pitchpoint.analyses.main_figures import laws_hold, why_not
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.solids import SolidInUse
 from pitchpoint.contact.contacts import Shape
-from pitchpoint.doubts import Checks, Doubt, in_percent
+from pitchpoint.core.doubts import Checks, Doubt, in_percent
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.lubrication.registry import BOUNDARY, ROLLING_RESISTANCE
+from pitchpoint.lubrication.lubrication_registry import BOUNDARY, ROLLING_RESISTANCE
 from pitchpoint.materials import solids
 from pitchpoint.materials.solids import celsius
 from pitchpoint.strength.limits import STRESS_CORRECTION

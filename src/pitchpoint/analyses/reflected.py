@@ -12,7 +12,7 @@ from pitchpoint.analyses.bodies import bodies_of
 from pitchpoint.analyses.inspection import CASES, inspection_part
 from pitchpoint.cases.built import MemberMotion
 from pitchpoint.cases.built_drive import BuiltDrive
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.results.store import dataset
 

@@ -11,11 +11,11 @@ from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
 from pitchpoint.analyses.lacking import untransmitted, without_formula
 from pitchpoint.analyses.loss_map import map_axes
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.doubts import Doubt, measured
+from pitchpoint.core.doubts import Doubt, measured
+from pitchpoint.core.status import locked_or_lost, solve_summary
 from pitchpoint.efficiency.quasi_static import Operation
 from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.results.store import dataset, without_nan
-from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = [
     "BANDS",

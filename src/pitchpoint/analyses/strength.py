@@ -13,15 +13,15 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Unasked
-from pitchpoint.analyses.figures import RATING, numbers
 from pitchpoint.analyses.lacking import no_pins
+from pitchpoint.analyses.main_figures import RATING, numbers
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
-from pitchpoint.doubts import Doubt, fails, in_stage
+from pitchpoint.core.doubts import Doubt, fails, in_stage
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.summary import groups_alike, joined_parts, of_stacks, stacks
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import bare_pair, ends_at_tips, rated_pair
-from pitchpoint.programs import program
 from pitchpoint.results.by_stage import Label, alike_labels
 from pitchpoint.results.store import dataset
 from pitchpoint.strength.limits import STRESS_CORRECTION

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, Unasked
-from pitchpoint.analyses.figures import by_law, json_figures
+from pitchpoint.analyses.main_figures import by_law, json_figures
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import (
     figures_beside_cycle,
@@ -28,12 +28,12 @@ from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.input.quantities import Pair, Quantity, SIValue, shown
 from pitchpoint.published.publication import ReadingPoint
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.publication_registry import PUBLICATIONS
 from pitchpoint.registry import code_at
 from pitchpoint.units import si_unit
 
 if TYPE_CHECKING:
-    from pitchpoint.dynamics.vibration import Vibrating
+    from pitchpoint.dynamics.pair_vibration import Vibrating
 
 __all__ = [
     "PREFIX",

@@ -18,7 +18,8 @@ from pitchpoint.analyses.caveats import (
 )
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Acting, Ready
-from pitchpoint.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
+from pitchpoint.core.doubts import GUESSED, WITHHELD, Doubt, doubts_of, stored
+from pitchpoint.core.status import locked_or_lost, solve_summary, withheld
 from pitchpoint.efficiency.profile import FINE, profile
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.efficiency.rows import NODES
@@ -26,10 +27,9 @@ from pitchpoint.efficiency.summary import groups_alike, joined_parts, summarise
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import touching
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import FrictionLaw
 from pitchpoint.results.rounding import difference
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, solve_summary, withheld
 
 __all__ = [
     "AT_CONTACT",

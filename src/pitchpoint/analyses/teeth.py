@@ -6,8 +6,8 @@ import xarray as xr
 from pitchpoint._jax import jax
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress
 from pitchpoint.cases.built import Built
-from pitchpoint.gears.bodies import drawing
-from pitchpoint.programs import program
+from pitchpoint.core.programs import program
+from pitchpoint.gears.mesh_bodies import drawing
 from pitchpoint.results.store import dataset
 
 __all__ = ["TEETH", "drawing_of"]

@@ -11,12 +11,14 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.analyses.caveats import proportions_counted, proportions_words
-from pitchpoint.analyses.figures import WIND_UP, by_torque, numbers
+from pitchpoint.analyses.main_figures import WIND_UP, by_torque, numbers
 from pitchpoint.analyses.three_slopes import PARTS, as_in_catalogues, torques_of_catalogues
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.contact.contacts import Contacts, contact_velocity
-from pitchpoint.doubts import Doubt, in_percent, in_stage
+from pitchpoint.core.doubts import Doubt, in_percent, in_stage
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import locked_or_lost, solve_summary
 from pitchpoint.efficiency.drag import at_rest, bearing_loads
 from pitchpoint.efficiency.quasi_static import Design, Engagement, coupling, engagement
 from pitchpoint.efficiency.summary import summarise
@@ -25,9 +27,7 @@ from pitchpoint.gears.on_balls import Body, OnBalls, separation_on_balls
 from pitchpoint.gears.pairs import in_pairs
 from pitchpoint.loading.equilibrium import touching_approach
 from pitchpoint.loading.wind_up import body_parts, hysteresis, wound_up
-from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import locked_or_lost, solve_summary
 
 __all__ = [
     "engaged_at",

@@ -9,15 +9,15 @@ import xarray as xr
 from pitchpoint._jax import jax, jnp
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.built_drive import Acting, BuiltTrain
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, solve_summary
 from pitchpoint.drive.kinematics import Ends
 from pitchpoint.drive.thrusts import axial_loads
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.quasi_static import Models, Operation, power_ratio
 from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, train_cycle
 from pitchpoint.gears.nominal_motion import nominal_period
-from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, solve_summary
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train import Train

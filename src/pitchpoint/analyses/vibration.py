@@ -11,14 +11,13 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.built import Built
-from pitchpoint.doubts import WITHHELD, Doubt
+from pitchpoint.core.doubts import WITHHELD, Doubt
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import DIRECT, Code, Status, solve_summary, status_summary
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import PeriodGrid
-from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.dynamics.response import Response
-from pitchpoint.dynamics.sweep import speed_sweep
-from pitchpoint.dynamics.system import System
-from pitchpoint.dynamics.vibration import (
+from pitchpoint.dynamics.pair_vibration import (
     Vibrating,
     excited,
     frequency_ratio,
@@ -26,19 +25,20 @@ from pitchpoint.dynamics.vibration import (
     steady,
     transmission_figures,
 )
+from pitchpoint.dynamics.response import Response
+from pitchpoint.dynamics.sweep import speed_sweep
+from pitchpoint.dynamics.system import System
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.efficiency.summary import of_stacks, stacks
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
+from pitchpoint.gears.mesh_bodies import plain_inertia
 from pitchpoint.gears.rated_pair import bare_pair
 from pitchpoint.loading.iso_6336_stiffness import estimate
+from pitchpoint.loading.loading_registry import TOOTH_COMPLIANCE
 from pitchpoint.loading.mesh_stiffness import MeshStiffness, mesh_stiffness
-from pitchpoint.loading.registry import TOOTH_COMPLIANCE
 from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.programs import program
 from pitchpoint.results.store import dataset
-from pitchpoint.status import DIRECT, Code, Status, solve_summary, status_summary
 
 __all__ = [
     "figures_of",

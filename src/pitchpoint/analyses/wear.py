@@ -6,7 +6,7 @@ from typing import Any
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Unasked
-from pitchpoint.analyses.figures import numbers
+from pitchpoint.analyses.main_figures import numbers
 from pitchpoint.cases.built import Built
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.pairs import flanks_in_turn

@@ -12,11 +12,12 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.analyses.analysis import Piece, PieceProgress
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.wear import limit_of, wear_constant_doubts, wear_model
+from pitchpoint.cases.wear_choices import limit_of, wear_constant_doubts, wear_model
 from pitchpoint.cases.worn import gears_digest
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.worn import BRIDGED, WIDEST
-from pitchpoint.doubts import Doubt, in_percent
+from pitchpoint.core.doubts import Doubt, in_percent
+from pitchpoint.core.status import Code, solve_summary
 from pitchpoint.efficiency.quasi_static import contacts_at, shares_at
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import line_of_action
@@ -24,10 +25,8 @@ from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.kinds import HARDNESS
-from pitchpoint.lubrication.ehl.registry import coarser_count
+from pitchpoint.lubrication.ehl.ehl_registry import coarser_count
 from pitchpoint.results.store import dataset
-from pitchpoint.status import Code, solve_summary
-from pitchpoint.wear.gradients import march_sensitivities
 from pitchpoint.wear.history import (
     ROOM,
     Cells,
@@ -38,9 +37,10 @@ from pitchpoint.wear.history import (
     wear_of_turn,
 )
 from pitchpoint.wear.march import FIRST, End, Limit, Rate, Reached, unworn_flanks, wear_step
-from pitchpoint.wear.stages import run_in_end, severe_start
-from pitchpoint.wear.teeth import TipThickness, backlash_growth, half_teeth, tips_of
+from pitchpoint.wear.wear_gradients import march_sensitivities
+from pitchpoint.wear.wear_stages import run_in_end, severe_start
 from pitchpoint.wear.wear_tables import WEAR_LAND, WearTable
+from pitchpoint.wear.worn_teeth import TipThickness, backlash_growth, half_teeth, tips_of
 
 __all__ = ["further", "joined", "wear_part", "wear_table"]
 

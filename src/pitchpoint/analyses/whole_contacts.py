@@ -18,18 +18,18 @@ from pitchpoint.analyses.film_contacts import (
     film_table,
 )
 from pitchpoint.cases.built import Built
-from pitchpoint.cases.films import USUAL_ENDS, end_surfaces
+from pitchpoint.cases.film_choices import USUAL_ENDS, end_surfaces
 from pitchpoint.cases.height_maps import height_maps
 from pitchpoint.contact.surface import Spot, Surface, Surfaces, missing
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.quasi_static import Design, Engagement
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.tooth_compliance import Terms, bending
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact, elliptic_contact, finite_line
-from pitchpoint.programs import program
 
 __all__ = ["Wholes", "in_the_middle", "one_contact", "whole_contacts"]
 

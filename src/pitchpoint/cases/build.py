@@ -34,8 +34,9 @@ from pitchpoint.cases.solids import (
     SolidInUse,
     solids_in_use,
 )
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-from pitchpoint.doubts import GUESSED, Doubt, as_doubt
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT
+from pitchpoint.core.doubts import GUESSED, Doubt, as_doubt
+from pitchpoint.core.programs import bound_programs, program
 from pitchpoint.efficiency.drag import drags
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.errors import Complaints
@@ -44,15 +45,14 @@ from pitchpoint.gears.families import Gears, built_gears
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.input.kinds import TEMPERATURE
-from pitchpoint.loading.registry import LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.loading_registry import LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.loading.tooth_compliance import uncovered
-from pitchpoint.lubrication.registry import (
+from pitchpoint.lubrication.lubrication_registry import (
     ChosenLaws,
 )
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.material_tables import Oil
 from pitchpoint.materials.surfaces import roughness_of
-from pitchpoint.programs import bound_programs, program
 from pitchpoint.registry import code_at
 
 __all__ = ["build", "check_alone", "gears_of"]
@@ -197,10 +197,10 @@ def _check_parts(
 
 TABLE_CHECKS = {
     "dynamics": "pitchpoint.cases.vibration_checks:check_vibration",
-    "duty": "pitchpoint.cases.duty:duty_inputs",
-    "strength": "pitchpoint.cases.strength:check_strength",
+    "duty": "pitchpoint.cases.built_duty:duty_inputs",
+    "strength": "pitchpoint.cases.strength_choices:check_strength",
     "film": "pitchpoint.cases.height_maps:height_maps",
-    "wear": "pitchpoint.cases.wear:check_wear",
+    "wear": "pitchpoint.cases.wear_choices:check_wear",
 }
 """Places of what has something against a table that few cases have; loaded for these."""
 

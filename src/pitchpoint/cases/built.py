@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 
 from pitchpoint._jax import array, jax
-from pitchpoint.brief import brief
 from pitchpoint.cases.drive_schema import StageTable
 from pitchpoint.cases.models import inlet_law, model_of_films, under_laws
 from pitchpoint.cases.schema import CaseFile
@@ -23,7 +22,10 @@ from pitchpoint.cases.solids import (
     surrounded,
 )
 from pitchpoint.contact.surface import Surfaces
-from pitchpoint.doubts import GUESSED, Doubt
+from pitchpoint.core.brief import brief
+from pitchpoint.core.doubts import GUESSED, Doubt
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import Drag, held_by
 from pitchpoint.efficiency.operation_tables import Operating
@@ -42,7 +44,7 @@ from pitchpoint.input.quantities import Quantity
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.lubrication.applicability import why_inapplicable
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
-from pitchpoint.lubrication.registry import (
+from pitchpoint.lubrication.lubrication_registry import (
     ASPERITY_LOAD,
     BOUNDARY,
     FILM_THICKNESS,
@@ -53,13 +55,11 @@ from pitchpoint.lubrication.registry import (
 )
 from pitchpoint.materials import lubricants
 from pitchpoint.materials.solids import reduced_modulus
-from pitchpoint.programs import program
 from pitchpoint.registry import code_at
 from pitchpoint.results.variable import End
-from pitchpoint.status import Code, Status
 
 if TYPE_CHECKING:
-    from pitchpoint.cases.strength import Rated
+    from pitchpoint.cases.strength_choices import Rated
     from pitchpoint.efficiency.mesh_link import MeshLink
     from pitchpoint.lubrication.ehl.model import FilmModel
 
@@ -261,7 +261,7 @@ class Built:
     @property
     def rated(self) -> "Rated":
         """The case as a rating of its strength takes it."""
-        rated_case = code_at("pitchpoint.cases.strength:rated_case")
+        rated_case = code_at("pitchpoint.cases.strength_choices:rated_case")
         rated: Rated = rated_case(self.case, self.solids, self.lubricant, self.design.roughness)
         return rated
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from pitchpoint._jax import array
-from pitchpoint.brief import brief
 from pitchpoint.cases.built import (
     BEARING_FREE,
     TEETH_ALONE,
@@ -21,7 +20,8 @@ from pitchpoint.cases.built import (
 )
 from pitchpoint.cases.document import STAGES, Document
 from pitchpoint.cases.drive_schema import DriveCase, StageTable
-from pitchpoint.doubts import in_stage
+from pitchpoint.core.brief import brief
+from pitchpoint.core.doubts import in_stage
 from pitchpoint.drive.kinematics import HOUSING, Ends
 from pitchpoint.efficiency.drag import Drag, held_by
 from pitchpoint.efficiency.drive import Drive
@@ -29,7 +29,7 @@ from pitchpoint.efficiency.drive_summary import drive_figures
 from pitchpoint.efficiency.quasi_static import Models, Operation
 from pitchpoint.efficiency.running_torque import torques_at_rest_of_drive
 from pitchpoint.input.quantities import Quantity
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import FrictionLaw
 from pitchpoint.registry import code_at
 from pitchpoint.results.variable import End
 from pitchpoint.strength.strength_table import MESH_LOAD

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from pitchpoint.core.plain_files import content
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.quantities import shown, text
-from pitchpoint.plain_files import content
 from pitchpoint.registry import nearest
 
 __all__ = [

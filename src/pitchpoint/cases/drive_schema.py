@@ -19,15 +19,15 @@ from pitchpoint.cases.schema import (
     check_quadrants,
 )
 from pitchpoint.cases.study_tables import Issues, OptimiseTable, Studies, StudyTable, Targets
-from pitchpoint.duty_cycle.table import DutyTable
+from pitchpoint.duty_cycle.duty_table import DutyTable
 from pitchpoint.dynamics.vibration_tables import Dynamics
 from pitchpoint.efficiency.drag_tables import Loss, check_losses
 from pitchpoint.efficiency.operation_tables import Housing, LossMap, Operating
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.cylindrical.table import CylindricalGears
 from pitchpoint.gears.families import GearsOfStage
+from pitchpoint.gears.gears_table import DEVIATION, STIFFNESS, GearsTable
 from pitchpoint.gears.planetary import PLANETARY, PLANETS, PinErrors, PlanetAngles, PlanetaryGears
-from pitchpoint.gears.table import DEVIATION, STIFFNESS, GearsTable
 from pitchpoint.input.kinds import MOST_STAGES, PLACE, Text
 from pitchpoint.input.quantities import Quantity, shown, text
 from pitchpoint.input.tables import Numbered, Table

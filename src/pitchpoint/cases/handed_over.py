@@ -14,9 +14,9 @@ from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.library import as_text
 from pitchpoint.cases.record import CASE
 from pitchpoint.cases.study_tables import Study
+from pitchpoint.core.plain_files import content, digest
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import SIValue
-from pitchpoint.plain_files import content, digest
 from pitchpoint.results.store import MOST_BYTES, write_bytes, write_text
 from pitchpoint.units import si_unit
 

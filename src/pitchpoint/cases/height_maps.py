@@ -11,10 +11,10 @@ from typing import Any, Final
 import numpy as np
 
 from pitchpoint.cases.x3p import Heights, read_x3p
+from pitchpoint.core.plain_files import MOST_BYTES, content, plain_file
 from pitchpoint.errors import LONGEST_PLACE, InputError, shorten, visible
 from pitchpoint.lubrication.ehl.film_tables import MEMBERS, FilmTable, HeightTable
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
-from pitchpoint.plain_files import MOST_BYTES, content, plain_file
 
 __all__ = ["height_maps"]
 

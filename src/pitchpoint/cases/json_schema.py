@@ -13,7 +13,7 @@ from pitchpoint.cases.document import DIAMETRAL_PITCH, MARKS, STAGES, STATUSES
 from pitchpoint.cases.drive_schema import DriveCase
 from pitchpoint.cases.loss_sets import NOT_THERE, SET, SET_TOLD
 from pitchpoint.cases.schema import CaseFile
-from pitchpoint.gears.table import GearsTable
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.input.tables import alternatives, key_sentences, measure_of, usual_words
 
 __all__ = ["case_schema", "table_schema"]

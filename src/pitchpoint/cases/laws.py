@@ -4,15 +4,15 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, model_validator
 
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
+from pitchpoint.efficiency.efficiency_registry import TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.input.kinds import COEFFICIENT
 from pitchpoint.input.quantities import Quantity, named, shown
 from pitchpoint.input.tables import Table
-from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
-from pitchpoint.lubrication.registry import (
+from pitchpoint.loading.loading_registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.lubrication.lubrication_registry import (
     ASPERITY_LOAD,
     FILM_THICKNESS,
     INLET_HEATING,
@@ -20,7 +20,7 @@ from pitchpoint.lubrication.registry import (
     ROLLING_RESISTANCE,
     FrictionLaw,
 )
-from pitchpoint.published.registry import LAWS_OF_CASES
+from pitchpoint.published.publication_registry import LAWS_OF_CASES
 from pitchpoint.registry import Registry, letters, nearest
 
 __all__ = ["FRICTION", "Choices", "FrictionChoice"]

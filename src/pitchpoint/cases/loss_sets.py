@@ -9,7 +9,7 @@ from typing import Any
 
 from pitchpoint.cases.document import Provenance
 from pitchpoint.errors import InputError
-from pitchpoint.gears.table import GearsTable
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.input.quantities import SIValue, named
 from pitchpoint.registry import Registry
 

@@ -9,8 +9,8 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.cases.laws import FRICTION, Choices
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import SolidInUse
+from pitchpoint.contact.contact_registry import USUAL_ELLIPSE
 from pitchpoint.contact.contacts import TOUCH, Shape
-from pitchpoint.contact.registry import USUAL_ELLIPSE
 from pitchpoint.efficiency.quasi_static import Models
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import pitch_point
@@ -18,14 +18,14 @@ from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.nominal_motion import tooth_size
 from pitchpoint.gears.pairs import touching
 from pitchpoint.input.remembered import remembering
-from pitchpoint.loading.registry import LOAD_SHARING
+from pitchpoint.loading.loading_registry import LOAD_SHARING
 from pitchpoint.loading.sharing import demand_sharing
 from pitchpoint.loading.tooth_compliance import terms_of
 from pitchpoint.lubrication.applicability import why_inapplicable
 from pitchpoint.lubrication.conditions import FILM, Law, demand_shape, law_arguments
 from pitchpoint.lubrication.ehl.film_tables import FilmTable
 from pitchpoint.lubrication.inlet_heating import Inlet, with_inlet_heating
-from pitchpoint.lubrication.registry import (
+from pitchpoint.lubrication.lubrication_registry import (
     ASPERITY_LOAD,
     FILM_THICKNESS,
     INLET_HEATING,
@@ -58,7 +58,7 @@ def model_of_films(
     table: FilmTable, solids: Sequence[SolidRecord], size: float | None
 ) -> "FilmModel":
     """How films are solved; loaded with what solves them, which few cases ask for."""
-    film_model: FilmModel = code_at("pitchpoint.cases.films:film_model")(table, solids, size)
+    film_model: FilmModel = code_at("pitchpoint.cases.film_choices:film_model")(table, solids, size)
     return film_model
 
 

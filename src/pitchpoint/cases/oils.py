@@ -7,7 +7,7 @@ from typing import Any
 
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.solids import datum
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.errors import InputError
 from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.materials import lubricants

@@ -25,10 +25,10 @@ from pydantic import (
 from pitchpoint import units
 from pitchpoint.cases.document import Tree, demand_shallow, set_key
 from pitchpoint.cases.library import as_text, case_names, case_path
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.plain_files import content
+from pitchpoint.core.programs import surroundings
 from pitchpoint.errors import InputError, shorten
-from pitchpoint.plain_files import content
-from pitchpoint.programs import surroundings
 from pitchpoint.results.store import write_text
 from pitchpoint.results.target_rows import TargetRow
 from pitchpoint.results.variable import End

@@ -27,16 +27,16 @@ from pitchpoint.cases.study_tables import (
     Target,
     Targets,
 )
-from pitchpoint.duty_cycle.table import DutyTable
+from pitchpoint.duty_cycle.duty_table import DutyTable
 from pitchpoint.dynamics.vibration_tables import Dynamics
 from pitchpoint.efficiency.drag_tables import Loss, check_losses
 from pitchpoint.efficiency.operation_tables import Housing, LossMap, Operating
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import Gears
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.gears.planetary import (
     PlanetaryGears,
 )
-from pitchpoint.gears.table import GearsTable
 from pitchpoint.input.kinds import (
     SPEED,
     Text,
@@ -57,7 +57,7 @@ from pitchpoint.materials.material_tables import (
 )
 from pitchpoint.published.atanasiu2011.table import PairInMotion
 from pitchpoint.published.liu_xiong_torus.table import TorusFormulas
-from pitchpoint.published.registry import publication_of
+from pitchpoint.published.publication_registry import publication_of
 from pitchpoint.published.tian2024.table import PairOnPath
 from pitchpoint.published.xu2021.table import ZoneFilms
 from pitchpoint.published.zhao2022.table import ConjugateWear, FlankWear

@@ -10,9 +10,9 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.schema import CaseFile
-from pitchpoint.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
+from pitchpoint.core.doubts import GUESSED, LEFT_OUT, REMARKED, Doubt, fails
+from pitchpoint.efficiency.efficiency_registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.quasi_static import Design
-from pitchpoint.efficiency.registry import TOOTH_TEMPERATURE
 from pitchpoint.efficiency.tooth_temperature import modulus_at
 from pitchpoint.efficiency.warm_teeth import ToothHeating
 from pitchpoint.errors import Complaints, InputError

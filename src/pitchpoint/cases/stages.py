@@ -19,7 +19,7 @@ from pitchpoint.cases.drive_schema import DriveCase, is_planetary
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.validation import planetary_of, validate, with_meshes
-from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
+from pitchpoint.core.doubts import LEFT_OUT, REMARKED, Doubt
 from pitchpoint.efficiency.drag import drags
 from pitchpoint.efficiency.drive import Drive, chained, loss_owner
 from pitchpoint.efficiency.operation_tables import Operating
@@ -28,7 +28,7 @@ from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.planetary import PlanetaryGears, in_words_of_set
 from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.input.quantities import SIValue
-from pitchpoint.lubrication.registry import ChosenLaws
+from pitchpoint.lubrication.lubrication_registry import ChosenLaws
 from pitchpoint.materials.material_tables import OF_SET, of_set
 from pitchpoint.strength.strength_table import UNRATED
 
@@ -234,7 +234,7 @@ def _built(
         raise
     _check_map(drive)
     if case.duty is not None:
-        from pitchpoint.cases.duty import duty_inputs
+        from pitchpoint.cases.built_duty import duty_inputs
 
         duty_inputs(case.duty, case.operation.temperature, travels="loaded" in drive.travels)
     bearing = without_bearing(drive.places, lacks_bearing=drive.lacks_bearing)

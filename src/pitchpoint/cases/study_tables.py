@@ -12,7 +12,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.kinds import Text
 from pitchpoint.input.quantities import Quantity, named, shown, text
 from pitchpoint.input.tables import Table
-from pitchpoint.published.registry import PUBLICATIONS
+from pitchpoint.published.publication_registry import PUBLICATIONS
 from pitchpoint.results.reductions import REDUCTIONS
 from pitchpoint.results.variables import VARIABLES
 

@@ -13,8 +13,8 @@ from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.drive_schema import DriveCase, TrainTable
 from pitchpoint.cases.schema import CaseFile
 from pitchpoint.cases.solids import BY_VALUE
-from pitchpoint.cases.strength import of_planets
-from pitchpoint.doubts import GUESSED, REMARKED, Doubt
+from pitchpoint.cases.strength_choices import of_planets
+from pitchpoint.core.doubts import GUESSED, REMARKED, Doubt
 from pitchpoint.drive.assembly import (
     check_neighbours,
     equal_angles,
@@ -28,9 +28,9 @@ from pitchpoint.efficiency.drag import drags
 from pitchpoint.efficiency.operation_tables import Operating
 from pitchpoint.efficiency.train import Train, gear_train, presses_other_flanks
 from pitchpoint.errors import RUNS_WITH, InputError
-from pitchpoint.gears.bodies import disc
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import disc
 from pitchpoint.materials.material_tables import SolidValues
 from pitchpoint.materials.solids import SolidRecord
 from pitchpoint.strength.strength_table import MESH_LOAD, StrengthTable

@@ -16,7 +16,7 @@ from pitchpoint.cases.stages import as_spelt, ready
 from pitchpoint.cases.validation import validate, with_meshes
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.families import build_together
-from pitchpoint.lubrication.registry import ChosenLaws
+from pitchpoint.lubrication.lubrication_registry import ChosenLaws
 
 __all__ = [
     "Variant",

@@ -6,13 +6,13 @@ from pitchpoint._jax import jax, jnp
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.models import solved_first
 from pitchpoint.cases.schema import CaseFile
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import program
 from pitchpoint.dynamics.vibration_tables import Dynamics
 from pitchpoint.errors import Complaints, InputError
-from pitchpoint.gears.bodies import plain_inertia
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh, has
-from pitchpoint.programs import program
+from pitchpoint.gears.mesh_bodies import plain_inertia
 
 __all__ = []
 

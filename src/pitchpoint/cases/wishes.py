@@ -17,11 +17,10 @@ from pitchpoint import units
 from pitchpoint.cases.document import STAGES
 from pitchpoint.cases.drive_schema import check_stage, form_of
 from pitchpoint.errors import InputError
-from pitchpoint.gears.cylindrical.inspection import Toothing
+from pitchpoint.gears.cylindrical.drawing_dimensions import Toothing
 from pitchpoint.gears.cylindrical.table import TIP, CylindricalGears
 from pitchpoint.gears.families import Gears
-from pitchpoint.gears.planetary import PLANETARY, PlanetaryGears
-from pitchpoint.gears.table import (
+from pitchpoint.gears.gears_table import (
     ANGLE,
     DEVIATION,
     DISTANCE,
@@ -32,6 +31,7 @@ from pitchpoint.gears.table import (
     SHIFT,
     GearsTable,
 )
+from pitchpoint.gears.planetary import PLANETARY, PlanetaryGears
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import quantity_in
 from pitchpoint.materials.data import oil_names

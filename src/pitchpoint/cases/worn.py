@@ -11,8 +11,8 @@ import xarray as xr
 from pitchpoint._jax import array
 from pitchpoint.contact.worn import FLATTEST
 from pitchpoint.errors import InputError, shorten, visible
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.table import GearsTable
 from pitchpoint.registry import enumerated
 from pitchpoint.results.by_stage import OF_STAGES, of_stage, stages_of
 from pitchpoint.results.store import load

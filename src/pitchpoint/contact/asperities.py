@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.contact.registry import SUMMITS, USUAL_SUMMITS
-from pitchpoint.factored import Numbers
+from pitchpoint.contact.contact_registry import SUMMITS, USUAL_SUMMITS
+from pitchpoint.core.factored import Numbers
 
 __all__ = [
     "ETA_BETA_SIGMA",

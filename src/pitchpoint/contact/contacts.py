@@ -7,7 +7,7 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 
 __all__ = ["KINDS", "TOUCH", "Contacts", "Shape", "contact_velocity", "total"]
 

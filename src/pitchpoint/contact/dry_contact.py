@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.half_space import HalfSpace
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import fast_program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
-from pitchpoint.programs import fast_program
-from pitchpoint.status import Code, Status
 
 __all__ = ["DryContact", "dry_contact", "near_ends", "pressed", "pressed_by"]
 

@@ -5,8 +5,8 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.elliptic_integrals import carlson_rd, complete_integrals
-from pitchpoint.factored import Numbers
-from pitchpoint.roots import find_root
+from pitchpoint.core.factored import Numbers
+from pitchpoint.core.roots import find_root
 
 __all__ = [
     "Ellipse",

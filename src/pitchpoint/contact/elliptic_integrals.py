@@ -3,7 +3,7 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["carlson_rd", "carlson_rf", "complete_integrals"]
 

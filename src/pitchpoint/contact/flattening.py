@@ -3,7 +3,7 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["line_compression", "yang_sun_1985"]
 

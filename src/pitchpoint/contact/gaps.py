@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.half_space import HalfSpace
 from pitchpoint.contact.surface import Spot, Surface, missing
-from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.core.factored import Arrays, Numbers
 
 __all__ = ["elliptic_gap", "line_gap", "missing_along"]
 

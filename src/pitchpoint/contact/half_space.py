@@ -9,8 +9,8 @@ from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers
 
 __all__ = ["ENDS", "HalfSpace", "graded_edges", "half_space"]
 

@@ -3,7 +3,7 @@
 from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, square_root
+from pitchpoint.core.factored import Numbers, square_root
 
 __all__ = ["line_half_width", "line_pressure", "line_shear"]
 

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.half_space import HalfSpace
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import fast_program
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
-from pitchpoint.programs import fast_program
 
 __all__ = ["Stresses", "below_row", "most_loaded_row", "stresses_below"]
 

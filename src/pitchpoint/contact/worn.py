@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Lanes, Spot, Surface, Surfaces, with_surfaces
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 
 __all__ = [
     "BRIDGED",

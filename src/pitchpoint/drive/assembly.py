@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.programs import program
 from pitchpoint.drive.kinematics import Link
 from pitchpoint.errors import InputError
 from pitchpoint.gears.pairs import planet_gears
-from pitchpoint.programs import program
 
 __all__ = [
     "ROOM_BETWEEN_PLANETS",

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from pitchpoint._jax import jax
-from pitchpoint.brief import brief
+from pitchpoint.core.brief import brief
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh, coordinates_of
 

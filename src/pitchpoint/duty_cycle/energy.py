@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.duty_cycle.history import ICE_POINT, LoadHistory
 from pitchpoint.duty_cycle.motor import Motor
 from pitchpoint.efficiency.loss_table import LossTable

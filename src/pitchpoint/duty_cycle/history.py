@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint import units
-from pitchpoint.duty_cycle.table import LARGEST
+from pitchpoint.core.plain_files import content
+from pitchpoint.duty_cycle.duty_table import LARGEST
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
-from pitchpoint.plain_files import content
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,7 @@ import xarray as xr
 from pitchpoint.duty_cycle.history import LoadHistory
 from pitchpoint.duty_cycle.life import BALL, RatedLife
 from pitchpoint.results.by_stage import of_stage, stages_of
-from pitchpoint.wear.registry import WEAR_LAWS
+from pitchpoint.wear.wear_registry import WEAR_LAWS
 
 __all__ = ["READ", "RecordedLives", "WornFlanks", "recorded_lives"]
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 
 if TYPE_CHECKING:
     from pitchpoint.dynamics.response import Response

@@ -7,10 +7,10 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.dynamics_registry import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import ExcitationCourse
 from pitchpoint.dynamics.maps import horner, identity, matrix_product
-from pitchpoint.dynamics.registry import ContactLaw
 
 __all__ = ["Pieces", "by_steps", "interval_coefficients", "travel"]
 

@@ -9,12 +9,12 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import looping_program, program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.dynamics.energy import relative_closure
 from pitchpoint.dynamics.excitation import ErrorOrders
-from pitchpoint.dynamics.joint import Joint, joint_response
-from pitchpoint.factored import Arrays
-from pitchpoint.programs import looping_program, program
-from pitchpoint.status import Code, Status
+from pitchpoint.dynamics.joint_vibration import Joint, joint_response
 
 __all__ = [
     "JointCourse",

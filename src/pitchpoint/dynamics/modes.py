@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.dynamics.bodies import bearing_damping, bearing_stiffness, on_all_coordinates
+from pitchpoint.dynamics.moving_bodies import bearing_damping, bearing_stiffness, on_all_coordinates
 from pitchpoint.dynamics.right_hand_side import MovingMesh, contact_forces
 from pitchpoint.gears.period import nodes
 

@@ -11,6 +11,7 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.core.programs import program
 from pitchpoint.dynamics.maps import horner
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import InputError
@@ -19,7 +20,6 @@ from pitchpoint.gears.period import edges, lobatto, nodes
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.springs import springs
 from pitchpoint.loading.tooth_compliance import Terms
-from pitchpoint.programs import program
 
 __all__ = [
     "Passage",

@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Array, Bool, Complex, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.factored import Numbers
+from pitchpoint.core.status import Code, Status
+from pitchpoint.dynamics.dynamics_registry import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.excitation import ExcitationCourse
 from pitchpoint.dynamics.floquet import STABLE, multipliers
-from pitchpoint.dynamics.registry import ContactLaw
-from pitchpoint.factored import Numbers
-from pitchpoint.status import Code, Status
 
 __all__ = ["Response", "response_from_states"]
 

@@ -8,7 +8,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
-from pitchpoint.dynamics.bodies import (
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS, ContactLaw
+from pitchpoint.dynamics.excitation import ErrorOrders
+from pitchpoint.dynamics.moving_bodies import (
     Body,
     bearing_damping,
     bearing_forces,
@@ -16,9 +18,7 @@ from pitchpoint.dynamics.bodies import (
     moved_masses,
     on_all_coordinates,
 )
-from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.passage import Passage, on_springs
-from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh, has

@@ -6,10 +6,10 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.dynamics_registry import ContactLaw
 from pitchpoint.dynamics.equations import Equations
 from pitchpoint.dynamics.floquet import STABLE, multipliers
 from pitchpoint.dynamics.integration import Pieces, travel
-from pitchpoint.dynamics.registry import ContactLaw
 
 __all__ = ["PERIODS", "Shot", "search", "shoot"]
 

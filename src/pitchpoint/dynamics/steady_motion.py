@@ -12,16 +12,19 @@ from jaxtyping import Array, Bool, Complex, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
-from pitchpoint.dynamics.bodies import (
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import fast_program
+from pitchpoint.core.status import Code, Status
+from pitchpoint.dynamics.energy import Account
+from pitchpoint.dynamics.floquet import STABLE, multipliers
+from pitchpoint.dynamics.grid import PeriodGrid
+from pitchpoint.dynamics.modes import mean_stiffness
+from pitchpoint.dynamics.moving_bodies import (
     bearing_damping,
     bearing_forces,
     bearing_stiffness,
     moved_masses,
 )
-from pitchpoint.dynamics.energy import Account
-from pitchpoint.dynamics.floquet import STABLE, multipliers
-from pitchpoint.dynamics.grid import PeriodGrid
-from pitchpoint.dynamics.modes import mean_stiffness
 from pitchpoint.dynamics.passage import Passage, passage
 from pitchpoint.dynamics.right_hand_side import (
     WORKS,
@@ -39,14 +42,11 @@ from pitchpoint.dynamics.right_hand_side import (
 from pitchpoint.dynamics.shooting import Shot, search
 from pitchpoint.dynamics.transient import CLOSED, demand_bodies, demand_effects, where_known
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.period import nodes
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.registry import FilmThickness
-from pitchpoint.programs import fast_program
-from pitchpoint.status import Code, Status
+from pitchpoint.lubrication.lubrication_registry import FilmThickness
 
 __all__ = ["Motion", "film", "periodic_motion", "steady_motion", "steady_motions"]
 

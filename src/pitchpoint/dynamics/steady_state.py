@@ -5,12 +5,12 @@ from collections.abc import Callable
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.equations import Equations, equations
 from pitchpoint.dynamics.excitation import Excitation, ExcitationCourse
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import interval_coefficients
 from pitchpoint.dynamics.maps import Map, chain, inverse_matrix
-from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.response import Response, response_from_states
 from pitchpoint.dynamics.series import by_series
 from pitchpoint.dynamics.shooting import Shot, shoot

@@ -4,11 +4,11 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.equations import equations
 from pitchpoint.dynamics.excitation import Excitation
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.integration import interval_coefficients
-from pitchpoint.dynamics.registry import CONTACT_LAWS, ContactLaw
 from pitchpoint.dynamics.response import Response
 from pitchpoint.dynamics.shooting import shoot
 from pitchpoint.dynamics.steady_state import respond_to, resting, scaled_start

@@ -11,8 +11,10 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.dynamics.bodies import Body, Support, bearing_stiffness, moved_masses
+from pitchpoint.core.programs import fast_program, program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.dynamics.energy import Account
+from pitchpoint.dynamics.moving_bodies import Body, Support, bearing_stiffness, moved_masses
 from pitchpoint.dynamics.right_hand_side import (
     WORKS,
     ContactForces,
@@ -26,8 +28,6 @@ from pitchpoint.dynamics.right_hand_side import (
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import has
 from pitchpoint.gears.tooth_section import tooth_sections
-from pitchpoint.programs import fast_program, program
-from pitchpoint.status import Code, Status
 
 __all__ = [
     "Transient",

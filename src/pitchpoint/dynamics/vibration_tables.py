@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from pitchpoint.errors import InputError
-from pitchpoint.gears.table import DEVIATION, MASS, PHASE, STIFFNESS, Deviation
+from pitchpoint.gears.gears_table import DEVIATION, MASS, PHASE, STIFFNESS, Deviation
 from pitchpoint.input.kinds import LOADED, MAP_SPEED, PRESSED, RATIO, SPEED, TORQUE, Flag
 from pitchpoint.input.quantities import Pair, Quantity
 from pitchpoint.input.tables import Table, is_stated

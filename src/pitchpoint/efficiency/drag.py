@@ -10,10 +10,10 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.efficiency.drag_tables import Loss, bearings_of
-from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, DragModel
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS, BREAKAWAY, DragModel
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.input.remembered import remembering
 from pitchpoint.loading.reactions import Bearing, InnerBearing

@@ -5,10 +5,10 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS, BREAKAWAY
 from pitchpoint.errors import Complaints, InputError
+from pitchpoint.gears.gears_table import BORE
 from pitchpoint.gears.planetary import BODIES
-from pitchpoint.gears.table import BORE
 from pitchpoint.input.kinds import FORCE, LIFE_EXPONENT, PLACE, SPEED, TORQUE, Flag, Text
 from pitchpoint.input.quantities import Quantity, named, shown
 from pitchpoint.input.tables import Table, is_stated

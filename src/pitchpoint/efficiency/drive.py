@@ -10,7 +10,9 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import demand_double, jnp
-from pitchpoint.brief import brief
+from pitchpoint.core.brief import brief
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Status
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.meetings import FEW, Meetings, meetings, unmet
 from pitchpoint.efficiency.quasi_static import (
@@ -23,8 +25,6 @@ from pitchpoint.efficiency.quasi_static import (
 )
 from pitchpoint.errors import InputError
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.programs import program
-from pitchpoint.status import Status
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train_state import TrainState

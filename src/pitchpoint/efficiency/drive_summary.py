@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.drive import (
     MET,
     Drive,
@@ -26,7 +27,6 @@ from pitchpoint.efficiency.quasi_static import (
 from pitchpoint.efficiency.rows import CHUNK, NODES
 from pitchpoint.efficiency.summary import engaged, mean_friction
 from pitchpoint.errors import InputError
-from pitchpoint.programs import program
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train_state import TrainState

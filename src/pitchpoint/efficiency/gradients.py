@@ -6,10 +6,10 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import demand_double, jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation, cycle, state
 from pitchpoint.errors import ConvergenceError
-from pitchpoint.gears.bodies import completed
-from pitchpoint.programs import program
+from pitchpoint.gears.mesh_bodies import completed
 
 __all__ = [
     "Inputs",

@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, demand_double, jax, jnp
+from pitchpoint.core.programs import fast_program
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, state
-from pitchpoint.programs import fast_program
 
 __all__ = ["Block", "state_grid"]
 

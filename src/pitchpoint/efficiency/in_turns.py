@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax
+from pitchpoint.core.status import Code, Status
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation
 from pitchpoint.efficiency.rows import balance_in_rows
 from pitchpoint.efficiency.solved import solved_cycle
 from pitchpoint.errors import ConvergenceError
 from pitchpoint.loading.balance import Balance
-from pitchpoint.status import Code, Status
 
 __all__ = ["InTurns", "balance_under", "first_turn", "in_turns"]
 

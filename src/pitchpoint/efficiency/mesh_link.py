@@ -29,8 +29,8 @@ from pitchpoint.efficiency.running_torque import torques_at_rest
 from pitchpoint.gears.mesh import Mesh, coordinates_of
 from pitchpoint.gears.nominal_motion import nominal_motion
 from pitchpoint.gears.pairs import touching
+from pitchpoint.loading.loading_registry import LoadSharing
 from pitchpoint.loading.reactions import Bearing
-from pitchpoint.loading.registry import LoadSharing
 
 __all__ = ["MeshLink"]
 

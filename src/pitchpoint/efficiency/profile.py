@@ -8,6 +8,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import total
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.in_turns import balance_under
 from pitchpoint.efficiency.quasi_static import (
     Design,
@@ -17,13 +18,17 @@ from pitchpoint.efficiency.quasi_static import (
     cycle_of,
 )
 from pitchpoint.efficiency.rows import one_engagement
-from pitchpoint.gears.bodies import main_dimensions
+from pitchpoint.gears.mesh_bodies import main_dimensions
 from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.loading.balance import Balance
 from pitchpoint.lubrication.applicability import Limited
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, AsperityLoad, FilmThickness
-from pitchpoint.programs import program
+from pitchpoint.lubrication.lubrication_registry import (
+    FILM_THICKNESS,
+    LAWS,
+    AsperityLoad,
+    FilmThickness,
+)
 
 __all__ = ["FINE", "profile"]
 

@@ -10,12 +10,14 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, demand_double, jax, jnp
-from pitchpoint.brief import brief
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
+from pitchpoint.core.brief import brief
+from pitchpoint.core.factored import Arrays, Numbers, product_array
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Status
 from pitchpoint.efficiency.drag import Drag, resistance
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers, product_array
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.coordinates import number_of
 from pitchpoint.gears.gear_body import GearBody
@@ -35,17 +37,19 @@ from pitchpoint.gears.period import polynomial_matrices
 from pitchpoint.loading.balance import Balance, first_guess, force_balance, tooth_load
 from pitchpoint.loading.balance import Drag as TorqueOnBodies
 from pitchpoint.loading.compliance import compliance
-from pitchpoint.loading.registry import LoadSharing
+from pitchpoint.loading.loading_registry import LoadSharing
 from pitchpoint.loading.sharing import from_stiffness
 from pitchpoint.loading.tooth_compliance import TeethAt, Terms, terms_of
 from pitchpoint.loading.wind_up import wound_up
 from pitchpoint.lubrication.conditions import Conditions, evaluate
-from pitchpoint.lubrication.registry import FilmThickness, FrictionLaw, RollingResistance
+from pitchpoint.lubrication.lubrication_registry import (
+    FilmThickness,
+    FrictionLaw,
+    RollingResistance,
+)
 from pitchpoint.materials.lubricants import Lubricant
 from pitchpoint.materials.solids import Solid, reduced_modulus
 from pitchpoint.materials.surfaces import Roughness
-from pitchpoint.programs import program
-from pitchpoint.status import Status
 
 __all__ = [
     "Cycle",

@@ -12,6 +12,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.quasi_static import (
     Design,
     Engagement,
@@ -20,9 +22,7 @@ from pitchpoint.efficiency.quasi_static import (
     engagement_alone,
     forces_at_nodes,
 )
-from pitchpoint.factored import Arrays
 from pitchpoint.loading.balance import Balance
-from pitchpoint.programs import program
 
 __all__ = [
     "CHUNK",

@@ -6,10 +6,10 @@ from dataclasses import replace
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.drag import at_rest
 from pitchpoint.efficiency.drive import Drive, LinkModels, LinkPlace
 from pitchpoint.efficiency.quasi_static import Design, Engagement, Models, Operation, cycle
-from pitchpoint.programs import program
 
 __all__ = [
     "no_load_torque",

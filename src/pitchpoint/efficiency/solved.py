@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.factored import product_array
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.efficiency.quasi_static import Cycle, Design, Engagement, Models, Operation, cycle
 from pitchpoint.errors import InputError
-from pitchpoint.factored import product_array
 from pitchpoint.lubrication.conditions import Conditions, demand_shape, law_arguments
-from pitchpoint.programs import program
-from pitchpoint.status import Code, Status
 
 __all__ = ["TOLERANCE", "Solver", "solved_cycle"]
 

@@ -11,6 +11,7 @@ from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import contact_velocity, total
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.drag import bearing_loads
 from pitchpoint.efficiency.in_turns import in_turns
 from pitchpoint.efficiency.quasi_static import (
@@ -34,16 +35,15 @@ from pitchpoint.efficiency.rows import (
     remembered_engagements,
     stacked,
 )
-from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import main_dimensions
 from pitchpoint.gears.nominal_motion import ratio_dimension
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.balance import Balance
 from pitchpoint.loading.reactions import radial_and_axial
 from pitchpoint.loading.sharing import equal
 from pitchpoint.lubrication.conditions import evaluate
-from pitchpoint.lubrication.registry import LAWS, FilmThickness
-from pitchpoint.programs import program
+from pitchpoint.lubrication.lubrication_registry import LAWS, FilmThickness
 
 if TYPE_CHECKING:
     from pitchpoint.efficiency.train_state import TrainState

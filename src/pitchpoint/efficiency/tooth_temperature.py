@@ -5,8 +5,8 @@ from typing import NamedTuple
 from jaxtyping import Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.factored import Numbers
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Numbers
 from pitchpoint.materials.solids import SolidRecord, celsius, heat_failure
 
 __all__ = [

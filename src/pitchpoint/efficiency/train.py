@@ -11,13 +11,13 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import array, demand_double, jax, jnp
-from pitchpoint.brief import brief
+from pitchpoint.core.brief import brief
+from pitchpoint.core.factored import Numbers
 from pitchpoint.drive.kinematics import HOUSING, Ends, Link
 from pitchpoint.drive.torques import train_torques
 from pitchpoint.efficiency.drag import Drag
 from pitchpoint.efficiency.quasi_static import Design
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Numbers
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import nominal_period, phase_sense
 from pitchpoint.gears.period import TOGETHER

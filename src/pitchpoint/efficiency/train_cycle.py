@@ -9,19 +9,19 @@ import numpy as np
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import demand_double, jax, jnp
-from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
+from pitchpoint.core.brief import brief
+from pitchpoint.core.factored import product_array, square_root
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drag import ROUNDING as NO_TURNING
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, extremes, power_ratio
 from pitchpoint.efficiency.train import Train, TrainMesh
-from pitchpoint.factored import product_array, square_root
 from pitchpoint.gears.period import nodes as period_nodes
 from pitchpoint.gears.period import phases_past_ties
 from pitchpoint.loading.balance import UNSOLVED
 from pitchpoint.lubrication.conditions import Conditions, evaluate
-from pitchpoint.programs import program
-from pitchpoint.status import Code, Status
 
 __all__ = ["NODES_OF_TRAINS", "MeshState", "TrainCycle", "train_cycle"]
 

@@ -8,6 +8,7 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.status import Code, Status
 from pitchpoint.drive.kinematics import HOUSING
 from pitchpoint.efficiency.drive import (
     MET,
@@ -21,7 +22,6 @@ from pitchpoint.efficiency.quasi_static import Engagement, Models, Operation
 from pitchpoint.efficiency.train import Train
 from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, TrainCycle, train_cycle
 from pitchpoint.efficiency.train_summary import torques_at_rest_of_train, train_memory
-from pitchpoint.status import Code, Status
 
 __all__ = ["TrainLink", "TrainState", "train_state"]
 

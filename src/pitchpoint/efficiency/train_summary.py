@@ -9,6 +9,8 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
 from pitchpoint.efficiency.drag import at_rest
 from pitchpoint.efficiency.quasi_static import Models, Operation, events_of, power_ratio
 from pitchpoint.efficiency.rows import CHUNK
@@ -17,9 +19,7 @@ from pitchpoint.efficiency.train import Train
 from pitchpoint.efficiency.train_cycle import NODES_OF_TRAINS, MeshState, TrainCycle, train_cycle
 from pitchpoint.errors import InputError
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.loading.registry import LoadSharing
-from pitchpoint.programs import program
-from pitchpoint.status import Code
+from pitchpoint.loading.loading_registry import LoadSharing
 
 __all__ = [
     "NearestToJamming",

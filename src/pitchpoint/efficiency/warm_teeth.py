@@ -8,12 +8,12 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
 from pitchpoint.efficiency.summary import tooth_heat_figures
 from pitchpoint.efficiency.tooth_temperature import ToothTemperature
 from pitchpoint.gears.contact_lines import pitch_point
-from pitchpoint.programs import program
-from pitchpoint.status import Code, Status
 
 __all__ = ["ToothHeating", "WarmTeeth", "warm_teeth", "warm_teeth_program"]
 

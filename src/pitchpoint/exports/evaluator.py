@@ -9,9 +9,9 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from pitchpoint.analyses.figures import error_words
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.four_quadrants import table_of
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
+from pitchpoint.analyses.main_figures import error_words
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.errors import InputError
 from pitchpoint.results.store import write_text

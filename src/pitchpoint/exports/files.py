@@ -13,8 +13,8 @@ import xarray as xr
 
 from pitchpoint.errors import InputError, visible
 from pitchpoint.exports.evaluator import evaluator
+from pitchpoint.exports.result_tables import Sheet, exported, sheets
 from pitchpoint.exports.simulators import TARGETS, option_of
-from pitchpoint.exports.tables import Sheet, exported, sheets
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import make_folder, without_nan, write_bytes, write_text
 from pitchpoint.runs.run import Outcome

@@ -11,8 +11,8 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Shape
 from pitchpoint.contact.surface import Offset, other_side
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.mesh import Mesh

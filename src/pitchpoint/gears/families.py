@@ -12,10 +12,10 @@ from pydantic import Field, Tag
 from pitchpoint.errors import InputError
 from pitchpoint.gears.ball_on_disc.table import BallOnDiscRig
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.gears_table import GearsTable
 from pitchpoint.gears.planetary import PlanetaryGears
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
-from pitchpoint.gears.table import GearsTable
 from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.input.tables import Table, table_by_key, tag
 

@@ -10,9 +10,9 @@ import numpy as np
 from pitchpoint._jax import array
 from pitchpoint.contact.surface import Surfaces, Waves
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import MassInertia
+from pitchpoint.gears.gears_table import Deviation
 from pitchpoint.gears.mesh import Mesh
-from pitchpoint.gears.table import Deviation
+from pitchpoint.gears.mesh_bodies import MassInertia
 from pitchpoint.materials.solids import Solid, SolidRecord
 
 __all__ = ["Family", "Followed", "Made", "Records", "Solids", "Turning", "waves"]

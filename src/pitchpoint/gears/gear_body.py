@@ -7,7 +7,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.materials.solids import Solid
 

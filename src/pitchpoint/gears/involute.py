@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.roots import find_root, hypot
 from pitchpoint.gears.pinion_cutter import PinionCutting
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes
-from pitchpoint.roots import find_root, hypot
 
 __all__ = [
     "FILLET_STATIONS",

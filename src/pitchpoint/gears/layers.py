@@ -7,8 +7,8 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.roots import hypot
 from pitchpoint.gears.involute import InvoluteGear
-from pitchpoint.roots import hypot
 
 __all__ = ["LAYERS", "LEVELS", "RIM", "DrawnBody", "DrawnPath", "drawn_gear", "labels", "layers"]
 

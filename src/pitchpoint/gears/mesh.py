@@ -8,11 +8,11 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax
-from pitchpoint.brief import brief
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Spot, Surfaces, with_surfaces
 from pitchpoint.contact.worn import new_and_worn, with_worn
-from pitchpoint.factored import Arrays
+from pitchpoint.core.brief import brief
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
 

@@ -8,13 +8,13 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.factored import Arrays, Numbers
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers
-from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.coordinates import number_of
 from pitchpoint.gears.mesh import Mesh, coordinates_of, has
-from pitchpoint.programs import program
+from pitchpoint.gears.mesh_bodies import main_dimensions
 
 __all__ = [
     "MOTORS",

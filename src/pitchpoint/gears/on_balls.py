@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 
 __all__ = [
     "Body",

@@ -15,7 +15,7 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 
 __all__ = [
     "ACTION",

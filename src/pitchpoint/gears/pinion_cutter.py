@@ -4,8 +4,8 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
-from pitchpoint.roots import hypot
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.roots import hypot
 
 __all__ = ["PinionCutting"]
 

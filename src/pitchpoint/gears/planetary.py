@@ -10,7 +10,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
 from pitchpoint.errors import RUNS_WITH, Cure, InputError
-from pitchpoint.gears.cylindrical.inspection import (
+from pitchpoint.gears.cylindrical.drawing_dimensions import (
     Toothing,
     distance_without_backlash,
     profile_shift_sum,
@@ -26,7 +26,7 @@ from pitchpoint.gears.cylindrical.table import (
     Inspection,
     read_field,
 )
-from pitchpoint.gears.table import (
+from pitchpoint.gears.gears_table import (
     ANGLE,
     DEVIATION,
     DISTANCE,

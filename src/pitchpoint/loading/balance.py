@@ -8,9 +8,9 @@ from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
-from pitchpoint.factored import Arrays, Numbers, factored_product
-from pitchpoint.roots import find_root, quotient, third_order_step
-from pitchpoint.status import Code, Status
+from pitchpoint.core.factored import Arrays, Numbers, factored_product
+from pitchpoint.core.roots import find_root, quotient, third_order_step
+from pitchpoint.core.status import Code, Status
 
 __all__ = ["Balance", "first_guess", "force_balance", "tooth_load"]
 
@@ -184,7 +184,7 @@ def first_guess(contacts: Contacts, share: Lanes, **given: Any) -> Each:
 
     In single precision it takes half the time, and is near enough for one step in double precision.
 
-    From Halley's step, see `roots.third_order_step`.
+    From Halley's step, see `core.roots.third_order_step`.
     """
     equation = _Equation(contacts, share, **given)
     return third_order_step(equation.unbalance, equation.start())

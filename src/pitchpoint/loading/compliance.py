@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body, separation_on_balls
 from pitchpoint.gears.tooth_section import tooth_sections

@@ -6,9 +6,9 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.status import Code, Status
 from pitchpoint.gears.on_balls import Body, OnBalls, ball_force, ball_stiffness, over_batch
-from pitchpoint.status import Code, Status
 
 __all__ = ["Equilibrium", "equilibrium", "touching_approach"]
 

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.doubts import GUESSED, Doubt, in_percent
+from pitchpoint.core.doubts import GUESSED, Doubt, in_percent
 from pitchpoint.gears.tooth_section import ToothSection
 
 __all__ = [

@@ -8,12 +8,12 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import REMARKED, Doubt, in_percent
-from pitchpoint.factored import Arrays
+from pitchpoint.core.doubts import REMARKED, Doubt, in_percent
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import program
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.rated_pair import StandardPair, standard_pair
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
 
 __all__ = [
     "STEEL_MODULUS",

@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, contact_velocity
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.period import edges, nodes

@@ -5,7 +5,7 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, total
-from pitchpoint.factored import square_root
+from pitchpoint.core.factored import square_root
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.mesh import Mesh
 

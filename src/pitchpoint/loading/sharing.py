@@ -4,15 +4,15 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, contact_velocity
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import main_dimensions
 from pitchpoint.gears.mesh import Mesh, has
+from pitchpoint.gears.mesh_bodies import main_dimensions
 from pitchpoint.gears.pairs import WAVE, touching, way_of_pairs
 from pitchpoint.gears.tooth_section import tooth_sections
 from pitchpoint.loading.compliance import Compliance
 from pitchpoint.loading.equilibrium import equilibrium
-from pitchpoint.loading.registry import LOAD_SHARING, LoadSharing
-from pitchpoint.programs import program
+from pitchpoint.loading.loading_registry import LOAD_SHARING, LoadSharing
 
 __all__ = [
     "demand_sharing",

@@ -5,7 +5,7 @@ from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import touching
 from pitchpoint.loading.compliance import Compliance, compliance

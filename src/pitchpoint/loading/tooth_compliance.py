@@ -13,10 +13,10 @@ from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.ellipse import hertz_1881
 from pitchpoint.contact.flattening import line_compression, yang_sun_1985
 from pitchpoint.contact.hertz import line_half_width
-from pitchpoint.doubts import reworded
+from pitchpoint.core.doubts import reworded
 from pitchpoint.gears.tooth_section import FLANK_NODES, ToothSection, chebyshev_nodes
 from pitchpoint.loading.foundation import foundation_compliance, foundation_warnings
-from pitchpoint.loading.registry import LINE_STIFFNESS, TOOTH_COMPLIANCE, ToothCompliance
+from pitchpoint.loading.loading_registry import LINE_STIFFNESS, TOOTH_COMPLIANCE, ToothCompliance
 from pitchpoint.materials.solids import Solid
 
 __all__ = [

@@ -6,7 +6,8 @@ from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, contact_velocity, total
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import looping_program, program
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.pairs import of_pairs, on_edge
@@ -14,7 +15,6 @@ from pitchpoint.loading.compliance import compliance
 from pitchpoint.loading.equilibrium import Equilibrium, equilibrium, touching_approach
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import looping_program, program
 
 __all__ = ["Hysteresis", "WindUp", "body_parts", "hysteresis", "wind_up", "wound_up"]
 

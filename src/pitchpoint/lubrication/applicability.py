@@ -6,7 +6,7 @@ from pitchpoint import units
 from pitchpoint.gears.contact_lines import pitch_point
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.lubrication.conditions import UNITS, law_arguments, of_other_shape
-from pitchpoint.lubrication.registry import AsperityLoad, FilmThickness, FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import AsperityLoad, FilmThickness, FrictionLaw
 
 __all__ = ["OF_PITCH_POINT", "Limited", "asks_for_pitch_point", "limits_words", "why_inapplicable"]
 
@@ -29,7 +29,7 @@ def asks_for_pitch_point(law: FrictionLaw) -> bool:
     """True if a law asks for what only a mesh with a pitch point has.
 
     Example:
-        >>> from pitchpoint.lubrication.registry import LAWS
+        >>> from pitchpoint.lubrication.lubrication_registry import LAWS
         >>> [law.name for law in LAWS if asks_for_pitch_point(law)]
         ['iso_tr_14179_2']
     """

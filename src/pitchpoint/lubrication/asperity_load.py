@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 from pitchpoint.lubrication.groups import line_groups
 
 __all__ = ["masjedi_khonsari_2012", "masjedi_khonsari_2012_regression", "none"]

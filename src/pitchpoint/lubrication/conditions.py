@@ -12,11 +12,11 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact import hertz
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
 from pitchpoint.contact.contacts import KINDS, TOUCH, Contacts, Shape
 from pitchpoint.contact.ellipse import Ellipse
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT, USUAL_ELLIPSE, EllipticContact
+from pitchpoint.core.factored import Numbers, factored_product, product_array
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Numbers, factored_product, product_array
 from pitchpoint.gears.contact_lines import PitchPoint
 
 __all__ = [

@@ -3,7 +3,7 @@
 from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 from pitchpoint.lubrication.groups import line_groups
 
 __all__ = [

@@ -9,8 +9,8 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers
 from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.solids import SolidRecord
 

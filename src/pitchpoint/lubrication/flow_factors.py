@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["mean_gap", "patir_cheng_1978", "patir_cheng_1979_shear"]
 

@@ -17,7 +17,7 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, log, product_array, scaled
+from pitchpoint.core.factored import Numbers, log, product_array, scaled
 
 __all__ = [
     "constant",

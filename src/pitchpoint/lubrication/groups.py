@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 from numpy.typing import ArrayLike, NDArray
 
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["line_groups", "load_parameter"]
 

@@ -12,8 +12,12 @@ from typing import Any, TypeVar
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, product_array
-from pitchpoint.lubrication.registry import FilmThickness, InletHeating, RollingResistance
+from pitchpoint.core.factored import Numbers, product_array
+from pitchpoint.lubrication.lubrication_registry import (
+    FilmThickness,
+    InletHeating,
+    RollingResistance,
+)
 
 __all__ = [
     "Inlet",

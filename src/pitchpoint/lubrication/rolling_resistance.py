@@ -3,7 +3,7 @@
 from jaxtyping import Bool, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.lubrication.groups import line_groups
 
 __all__ = [

@@ -9,11 +9,11 @@ import numpy as np
 from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
+from pitchpoint.core.factored import Numbers
 from pitchpoint.errors import InputError, shorten
-from pitchpoint.factored import Numbers
 from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.materials.registry import (
+from pitchpoint.materials.materials_registry import (
     DENSITY,
     SHEAR_STRESS,
     USUAL_DENSITY,

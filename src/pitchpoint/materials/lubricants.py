@@ -13,12 +13,12 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
 from pitchpoint.materials._leaves import float64_array
 from pitchpoint.materials.data import Datum, check_positive, read_data, read_datum
 from pitchpoint.materials.pressure_viscosity import gold_2001
 from pitchpoint.materials.viscosity import astm_d341, dynamic_viscosity
-from pitchpoint.programs import program
 from pitchpoint.registry import known_as, unknown_name
 
 __all__ = [

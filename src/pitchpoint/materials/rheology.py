@@ -10,8 +10,8 @@ from typing import Final
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
-from pitchpoint.materials.registry import LEAST_PRESSURE
+from pitchpoint.core.factored import Numbers
+from pitchpoint.materials.materials_registry import LEAST_PRESSURE
 
 __all__ = [
     "bair_2015",

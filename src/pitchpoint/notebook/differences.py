@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.variant import Variant

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.duty import rated_lives
 from pitchpoint.analyses.tooth_life import tooth_life
-from pitchpoint.duty_cycle.cycle import Heating, duty_dataset
+from pitchpoint.duty_cycle.duty_dataset import Heating, duty_dataset
 from pitchpoint.duty_cycle.energy import demand_inside
 from pitchpoint.duty_cycle.history import (
     LoadHistory,

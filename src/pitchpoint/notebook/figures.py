@@ -9,8 +9,8 @@ from pitchpoint.input.quantities import shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views.figures import Figure, Panel, curves
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import Page, panels
+from pitchpoint.views.section_registry import in_order
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

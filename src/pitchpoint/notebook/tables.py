@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pitchpoint import citations, units
-from pitchpoint.analyses.figures import main_figures
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
+from pitchpoint.analyses.main_figures import main_figures
 from pitchpoint.cases.record import sources_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case

@@ -7,8 +7,8 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.programs import program
 from pitchpoint.published.publication import ReadingPoint
 
 __all__ = ["of_sharp_flank", "readings"]

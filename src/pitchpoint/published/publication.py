@@ -14,7 +14,7 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES
 
 if TYPE_CHECKING:
-    from pitchpoint.dynamics.vibration import Vibrating
+    from pitchpoint.dynamics.pair_vibration import Vibrating
     from pitchpoint.efficiency.quasi_static import Design, Models, Operation
     from pitchpoint.input.tables import Table
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import doubts_of, in_stage, stored
-from pitchpoint.status import Code
+from pitchpoint.core.doubts import doubts_of, in_stage, stored
+from pitchpoint.core.status import Code
 
 __all__ = [
     "OF_STAGES",

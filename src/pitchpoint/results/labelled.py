@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import DOUBT_FIELDS
+from pitchpoint.core.doubts import DOUBT_FIELDS
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.by_stage import OF_STAGES

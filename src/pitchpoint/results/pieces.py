@@ -13,7 +13,7 @@ import xarray as xr
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from pitchpoint.doubts import doubts_of
+from pitchpoint.core.doubts import doubts_of
 from pitchpoint.errors import InputError
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.store import load, save_image

@@ -17,13 +17,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import stored
+from pitchpoint.core.doubts import stored
+from pitchpoint.core.plain_files import plain_file
+from pitchpoint.core.status import DIRECT
 from pitchpoint.errors import InputError
-from pitchpoint.plain_files import plain_file
 from pitchpoint.results.netcdf import decode, encode
 from pitchpoint.results.variable import End, Variable
 from pitchpoint.results.variables import VARIABLES
-from pitchpoint.status import DIRECT
 
 __all__ = [
     "dataset",
@@ -67,7 +67,7 @@ def dataset(
     Args:
         variables: dimensions and values by name; names of `VARIABLES` get their attributes.
         coordinates: values by dimension.
-        solve: what became of the solves behind it, see `status.solve_summary`; kept as JSON.
+        solve: what became of the solves behind it, see `core.status.solve_summary`; kept as JSON.
         travels: members that travel in place of turning, whose quantities have other units.
         warnings: sentences on what is doubtful, see `doubts.stored`; None where a part has no place for any.
         attributes: strings and numbers; anything else is stored as JSON.

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from pitchpoint import units
-from pitchpoint.results.strength import EXTREMES, STRENGTH
+from pitchpoint.results.strength_variables import EXTREMES, STRENGTH
 from pitchpoint.results.variable import (
     End,
     Variable,

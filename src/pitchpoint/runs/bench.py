@@ -11,14 +11,14 @@ import xarray as xr
 from jaxtyping import Float
 
 from pitchpoint._jax import double_precision
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.analyses.envelope import gear_envelope
-from pitchpoint.analyses.figures import efficiency_coverage
+from pitchpoint.analyses.main_figures import efficiency_coverage
 from pitchpoint.analyses.plausibility import unlikely
-from pitchpoint.analyses.registry import ANALYSES
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import doubts_of, ranked_doubts
+from pitchpoint.core.doubts import doubts_of, ranked_doubts
 from pitchpoint.errors import ConvergenceError, InputError, visible
 from pitchpoint.input.quantities import shown
 from pitchpoint.results.variable import (
@@ -34,7 +34,7 @@ from pitchpoint.results.variable import (
     torsional_stiffness,
 )
 from pitchpoint.runs.case import CaseLike, selected_variants
-from pitchpoint.runs.designs import design_names, resolved_reference
+from pitchpoint.runs.compared_designs import design_names, resolved_reference
 from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Progress
 

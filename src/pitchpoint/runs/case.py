@@ -28,9 +28,9 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.cases.wishes import WISHES, wish_answer
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
-from pitchpoint.gears.table import SHIFT
+from pitchpoint.gears.gears_table import SHIFT
 from pitchpoint.input.quantities import Quantity, shown
-from pitchpoint.lubrication.registry import ChosenLaws
+from pitchpoint.lubrication.lubrication_registry import ChosenLaws
 from pitchpoint.registry import nearest
 from pitchpoint.runs.python_values import demand_arguments, plain_value
 from pitchpoint.runs.reading import variants_of

@@ -5,18 +5,18 @@ from math import inf
 from typing import Any
 
 from pitchpoint import units
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.loss_sets import loss_sets
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT, SUMMITS
-from pitchpoint.dynamics.registry import CONTACT_LAWS
-from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
-from pitchpoint.gears.strain_wave.registry import WAVE_SHAPES
-from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT, SUMMITS
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
+from pitchpoint.gears.strain_wave.strain_wave_registry import WAVE_SHAPES
+from pitchpoint.loading.loading_registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.applicability import Limited, asks_for_pitch_point, limits_words
 from pitchpoint.lubrication.conditions import Law, shape_of
-from pitchpoint.lubrication.ehl.registry import ASPERITIES
-from pitchpoint.lubrication.registry import (
+from pitchpoint.lubrication.ehl.ehl_registry import ASPERITIES
+from pitchpoint.lubrication.lubrication_registry import (
     ASPERITY_LOAD,
     FILM_THICKNESS,
     INLET_HEATING,
@@ -26,12 +26,12 @@ from pitchpoint.lubrication.registry import (
 )
 from pitchpoint.materials import lubricants, solids
 from pitchpoint.materials.data import Datum
-from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
-from pitchpoint.published.registry import LAWS_OF_CASES
+from pitchpoint.materials.materials_registry import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.published.publication_registry import LAWS_OF_CASES
 from pitchpoint.registry import unknown_name
 from pitchpoint.results.variables import variable_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.wear.registry import WEAR_LAWS
+from pitchpoint.wear.wear_registry import WEAR_LAWS
 
 __all__ = ["entries", "figures_by_law", "matching"]
 

@@ -6,7 +6,7 @@ from typing import Any
 from pitchpoint.cases.document import variants
 from pitchpoint.cases.library import find_case
 from pitchpoint.cases.record import is_record, is_result
-from pitchpoint.doubts import Doubt, as_doubt, of_designs
+from pitchpoint.core.doubts import Doubt, as_doubt, of_designs
 from pitchpoint.errors import CollectedInputError, InputError
 from pitchpoint.runs.case import Case
 from pitchpoint.runs.optimise import demand_optimiser

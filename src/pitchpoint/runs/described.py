@@ -15,11 +15,11 @@ import xarray as xr
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.analysis import PieceProgress as AnalysisProgress
 from pitchpoint.analyses.analysis import silent
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.analyses.made_gears import unfollowed
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.variant import Variant
-from pitchpoint.programs import bound_programs, surroundings
+from pitchpoint.core.programs import bound_programs, surroundings
 from pitchpoint.results.netcdf import encode
 from pitchpoint.results.pieces import ALONG
 from pitchpoint.results.store import fingerprint

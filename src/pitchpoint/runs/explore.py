@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis
-from pitchpoint.analyses.figures import main_figures
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
+from pitchpoint.analyses.main_figures import main_figures
 from pitchpoint.analyses.studies import sweep_values
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.keys import quantity_at

@@ -7,7 +7,7 @@ from functools import cached_property
 import xarray as xr
 
 from pitchpoint.analyses.analysis import Analysis, Piece, PieceProgress, Several, Subject, silent
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.variant import Variant

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
+from pitchpoint.analyses.analysis_registry import FOUR_QUADRANTS
 from pitchpoint.analyses.four_quadrants import table_of
-from pitchpoint.analyses.registry import FOUR_QUADRANTS
 from pitchpoint.cases.built_drive import TRAIN_PERIOD
 from pitchpoint.duty_cycle.history import demand_kelvins
 from pitchpoint.efficiency.friction_fit import (

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from pitchpoint.analyses.analysis import Analysis, Several
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.document import Document
 from pitchpoint.cases.models import FILM_SOLVERS

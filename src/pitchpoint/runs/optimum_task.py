@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 
 from pitchpoint import units
 from pitchpoint._jax import jax
-from pitchpoint.analyses.designs import CaseDesigns
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.analyses.studies import demand_one
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready

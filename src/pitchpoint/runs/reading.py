@@ -10,9 +10,9 @@ from pitchpoint.cases.document import read_tables, variants
 from pitchpoint.cases.library import as_text, case_path, find_case
 from pitchpoint.cases.record import CASE, MANIFEST, RUN, Manifest, Record, is_record, is_result
 from pitchpoint.cases.variant import Variant
+from pitchpoint.core.plain_files import digest_of
 from pitchpoint.errors import InputError, shorten, visible
-from pitchpoint.lubrication.registry import ChosenLaws
-from pitchpoint.plain_files import digest_of
+from pitchpoint.lubrication.lubrication_registry import ChosenLaws
 from pitchpoint.registry import nearest
 
 __all__ = ["variants_of"]

@@ -16,12 +16,12 @@ import xarray as xr
 
 from pitchpoint._jax import double_precision, jax
 from pitchpoint.analyses.analysis import Piece, Unasked
+from pitchpoint.analyses.analysis_registry import ANALYSES, DUTY
 from pitchpoint.analyses.comparison import compare, demand_parts
 from pitchpoint.analyses.plausibility import unlikely
-from pitchpoint.analyses.registry import ANALYSES, DUTY
 from pitchpoint.analyses.strength import STRENGTH
 from pitchpoint.analyses.studies import is_study
-from pitchpoint.cases import inputs
+from pitchpoint.cases import resolved_inputs
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import BuiltTrain, Ready
 from pitchpoint.cases.document import STAGES, Document
@@ -33,26 +33,26 @@ from pitchpoint.cases.study_tables import Study
 from pitchpoint.cases.validation import validate
 from pitchpoint.cases.variant import Variant
 from pitchpoint.citations import citation_text
-from pitchpoint.doubts import as_doubt, concerns, doubts_of, ranked_doubts
-from pitchpoint.dynamics.registry import CONTACT_LAWS
+from pitchpoint.core.doubts import as_doubt, concerns, doubts_of, ranked_doubts
+from pitchpoint.core.programs import bound_programs, surroundings
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.efficiency.drag_tables import Loss
-from pitchpoint.efficiency.registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
+from pitchpoint.efficiency.efficiency_registry import BEARING_LOSS, BREAKAWAY, TOOTH_TEMPERATURE
 from pitchpoint.errors import InputError, shorten
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import has
-from pitchpoint.loading.registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
+from pitchpoint.loading.loading_registry import LINE_STIFFNESS, LOAD_SHARING, TOOTH_COMPLIANCE
 from pitchpoint.lubrication.conditions import law_arguments
-from pitchpoint.lubrication.ehl.registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
-from pitchpoint.lubrication.registry import (
+from pitchpoint.lubrication.ehl.ehl_registry import ASPERITIES, ISOTHERMAL, SMOOTH, THERMAL
+from pitchpoint.lubrication.lubrication_registry import (
     FILM_THICKNESS,
     INLET_HEATING,
     ROLLING_RESISTANCE,
     ChosenLaws,
     FrictionLaw,
 )
-from pitchpoint.materials.registry import DENSITY, SHEAR_STRESS, VISCOSITY
-from pitchpoint.programs import bound_programs, surroundings
-from pitchpoint.published.registry import publication_of
+from pitchpoint.materials.materials_registry import DENSITY, SHEAR_STRESS, VISCOSITY
+from pitchpoint.published.publication_registry import publication_of
 from pitchpoint.registry import letters, nearest
 from pitchpoint.results.by_stage import Label
 from pitchpoint.results.store import (
@@ -253,7 +253,7 @@ def run_variant(
     Where they are not the `whole` of the case, nobody asks why it lacks others.
     """
     built = work[0].built if work else variant.built({})
-    rows = inputs.input_rows(built, variant.document(), studies)
+    rows = resolved_inputs.input_rows(built, variant.document(), studies)
     outcome = Outcome(partial(_manifest, variant, built, rows))
     if whole:
         outcome.note(lacks=_lacking(built))
@@ -284,7 +284,7 @@ _LEFT = ("study_*", "loss_map", "four_quadrants")
 def mark_of(variant: Variant, part: str) -> str:
     """Digest of all that decides about a part of that name which no case asks for."""
     built = variant.built({})
-    return _mark(variant, built, inputs.input_rows(built, variant.document()), part)
+    return _mark(variant, built, resolved_inputs.input_rows(built, variant.document()), part)
 
 
 def _of_design(variant: Variant, built: Ready) -> list[str]:
@@ -462,7 +462,9 @@ def uncomputed_manifests(
         _jobs(variant, studies or {})  # made, not computed: a wrong study shows now
     built = [(variant, variant.built({})) for variant in variants]
     return [
-        _manifest(*prepared, inputs.input_rows(prepared[1], prepared[0].document(), studies))
+        _manifest(
+            *prepared, resolved_inputs.input_rows(prepared[1], prepared[0].document(), studies)
+        )
         | ranked_doubts(_of_design(*prepared))
         for prepared in built
     ]
@@ -604,9 +606,9 @@ def _opened(path: Path) -> Outcome:
     return Outcome(manifest, parts)
 
 
-def _mark(variant: Variant, built: Ready, rows: Sequence[inputs.Row], part: str) -> str:
+def _mark(variant: Variant, built: Ready, rows: Sequence[resolved_inputs.Row], part: str) -> str:
     """Digest of the inputs of a part, out of their rows: the same for a case and for its record."""
-    study = inputs.STUDIES
+    study = resolved_inputs.STUDIES
     rows = [row for row in rows if row["table"] != DUTY.name or part == DUTY.name]
     of_inputs = [
         [row["table"], row["key"], row["value"]]
@@ -635,7 +637,7 @@ def _names_file(row: Mapping[str, Any]) -> bool:
     return leaf == "file" and bool({"film", "worn", "duty"} & {*above})
 
 
-def _digests(rows: Sequence[inputs.Row]) -> list[str]:
+def _digests(rows: Sequence[resolved_inputs.Row]) -> list[str]:
     """Digests of files that a case names: what they hold is part of its inputs."""
     return [row["value"] for row in rows if row["key"].split(".")[-1] == "digest"]
 
@@ -838,7 +840,9 @@ SET = "planetary set"
 
 
 @double_precision()
-def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dict[str, Any]:
+def _manifest(
+    variant: Variant, built: Ready, rows: Sequence[resolved_inputs.Row]
+) -> dict[str, Any]:
     """Record of a variant before its parts; `rows` are those of `inputs.input_rows`."""
     case, document = built.case, variant.document()
     laws, others, meshes = built.laws, _models(built), built.meshes
@@ -849,7 +853,7 @@ def _manifest(variant: Variant, built: Ready, rows: Sequence[inputs.Row]) -> dic
         "title": case.title or variant.label,
         "summary": case.summary,
         "source": case.source,
-        "inputs": [*rows, *inputs.following_rows(built)],
+        "inputs": [*rows, *resolved_inputs.following_rows(built)],
         "targets": [
             target.model_dump(mode="json", exclude_unset=True)
             for target in (case.targets if _measured(variant) else ())

@@ -9,7 +9,7 @@ import xarray as xr
 from jaxtyping import Float
 
 from pitchpoint.analyses.analysis import Analysis
-from pitchpoint.analyses.registry import ANALYSES
+from pitchpoint.analyses.analysis_registry import ANALYSES
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import shown

@@ -12,14 +12,15 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import double_precision
-from pitchpoint.analyses.designs import TOGETHER
+from pitchpoint.analyses.design_batch import TOGETHER
 from pitchpoint.analyses.studies import demand_one, refuse_film_sweep
 from pitchpoint.analyses.summaries import balance_codes, first_warnings
 from pitchpoint.cases.record import OUTPUT
 from pitchpoint.cases.study_tables import StudyTable, Sweep
 from pitchpoint.cases.validation import validate, with_meshes
 from pitchpoint.cases.variant import Variant
-from pitchpoint.doubts import stored
+from pitchpoint.core.doubts import stored
+from pitchpoint.core.status import solve_summary
 from pitchpoint.errors import InputError
 from pitchpoint.input.remembered import remembering
 from pitchpoint.results.chosen_units import shown_in, unit_choice
@@ -33,7 +34,6 @@ from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, Progress, with_user_law
 from pitchpoint.runs.tolerances import with_tolerances
 from pitchpoint.runs.workers import pieces_of_workers
-from pitchpoint.status import solve_summary
 
 __all__ = [
     "PIECE",

@@ -16,7 +16,7 @@ from pitchpoint.sizing.for_ratio import (
     without_undercut,
 )
 from pitchpoint.sizing.stage_forms import CENTRE_FIELD, FIELD, Form, formed
-from pitchpoint.sizing.table import Task
+from pitchpoint.sizing.task_table import Task
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
 
 __all__ = ["SET_RATIOS", "Arrangement", "arrangements", "reach_words"]

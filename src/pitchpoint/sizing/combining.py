@@ -11,7 +11,7 @@ from pitchpoint.sizing.arrangements import Arrangement, arrangements, reach_word
 from pitchpoint.sizing.for_ratio import MODULES
 from pitchpoint.sizing.front import non_dominated, representatives
 from pitchpoint.sizing.stage_forms import Form, Forms, Sized
-from pitchpoint.sizing.table import Task
+from pitchpoint.sizing.task_table import Task
 
 __all__ = ["Drives", "NoDriveError", "drives_of", "exactly_loaded"]
 

@@ -19,8 +19,8 @@ from pitchpoint.cases.trains import USUAL_BEARING
 from pitchpoint.drive.assembly import clear_neighbours, fit_at_equal_angles
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
+from pitchpoint.gears.gears_table import DISTANCE
 from pitchpoint.gears.planetary import PLANETARY, PLANETS
-from pitchpoint.gears.table import DISTANCE
 from pitchpoint.input.kinds import LIFE, SPEED
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.registry import letters

@@ -13,13 +13,13 @@ import xarray as xr
 
 from pitchpoint._jax import double_precision
 from pitchpoint.analyses.analysis import silent
+from pitchpoint.analyses.analysis_registry import REFLECTED
 from pitchpoint.analyses.bodies import bodies_of
-from pitchpoint.analyses.registry import REFLECTED
 from pitchpoint.analyses.strength import ratings_of
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.analyses.torsion import stiffness_at_load
 from pitchpoint.cases.built_drive import Ready
-from pitchpoint.doubts import GUESSED
+from pitchpoint.core.doubts import GUESSED
 from pitchpoint.errors import InputError
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder, write_text
@@ -36,7 +36,7 @@ from pitchpoint.sizing.strain_wave import (
     strain_wave_sizes,
     why_no_size,
 )
-from pitchpoint.sizing.table import Task, read_task
+from pitchpoint.sizing.task_table import Task, read_task
 
 __all__ = ["SizedDrive", "Sizing", "families_by_reason", "size", "sized_for"]
 

@@ -16,18 +16,18 @@ from jaxtyping import Float, Int
 
 from pitchpoint._jax import jnp
 from pitchpoint.analyses.analysis import silent
+from pitchpoint.analyses.analysis_registry import REFLECTED
 from pitchpoint.analyses.inspection import inspection_part
-from pitchpoint.analyses.registry import REFLECTED
 from pitchpoint.analyses.strength import rating_inputs
 from pitchpoint.cases.built_drive import Ready
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import PitchPoint, pitch_point
 from pitchpoint.gears.cylindrical.din_3967 import thickness_allowances
 from pitchpoint.gears.rated_pair import RatedPair, bare_pair, rated_pair
 from pitchpoint.lubrication.friction_coefficient import iso_tr_14179_2
-from pitchpoint.programs import program
 from pitchpoint.runs.run import load_case
-from pitchpoint.sizing.table import Task
+from pitchpoint.sizing.task_table import Task
 from pitchpoint.sizing.three_k import mesh_efficiency, three_k_efficiencies
 from pitchpoint.strength.rating import ROWS, ratings
 

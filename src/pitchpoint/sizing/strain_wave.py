@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from pitchpoint import units
-from pitchpoint.gears.strain_wave.load_limits import bearing_life, of_other_size
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
+from pitchpoint.gears.strain_wave.strength_estimates import bearing_life, of_other_size
 from pitchpoint.sizing.stage_forms import running_tables
-from pitchpoint.sizing.table import Task
+from pitchpoint.sizing.task_table import Task
 
 __all__ = [
     "RATIOS",
@@ -120,7 +120,7 @@ def strain_wave_sizes(task: Task, ratio: float) -> list[StrainWaveSize]:
     20.2, see `bearing_life`; largest input speeds as recalled from catalogues, see `SIZES`.
 
     Example:
-        >>> from pitchpoint.sizing.table import Task
+        >>> from pitchpoint.sizing.task_table import Task
         >>> task = Task.read(torque="60 N m", ratio=100, speed="20 rpm", life="5000 h")
         >>> [round(1e3 * size.diameter, 1) for size in strain_wave_sizes(task, 100.0)]
         [60.0, 76.8, 96.0]

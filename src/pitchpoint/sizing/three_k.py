@@ -20,8 +20,8 @@ from pitchpoint.drive.assembly import ROOM_BETWEEN_PLANETS
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pairs
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE
+from pitchpoint.gears.gears_table import SHIFT
 from pitchpoint.gears.planetary import PLANETARY
-from pitchpoint.gears.table import SHIFT
 
 __all__ = ["mesh_efficiency", "three_k_efficiencies", "three_k_sets", "three_k_tables"]
 

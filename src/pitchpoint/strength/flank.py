@@ -7,7 +7,7 @@ programs agree, and which give the factors that STplus and the FVA Workbench pri
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = [
     "NO_MODIFICATION",

@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["ToothForces", "tooth_forces"]
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 from pitchpoint.strength.treatments import Life, Treatment
 
 __all__ = [

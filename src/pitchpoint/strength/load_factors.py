@@ -6,7 +6,7 @@ from math import isnan, nan
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = [
     "CLASSES",

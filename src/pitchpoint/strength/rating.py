@@ -9,13 +9,13 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import program
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.nominal_motion import nominal_motion
 from pitchpoint.gears.rated_pair import RatedPair, rated_pair
 from pitchpoint.loading import iso_6336_stiffness
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
 from pitchpoint.strength import flank, limits, load_factors, root, vdi_2736
 from pitchpoint.strength.forces import ToothForces, tooth_forces
 
@@ -224,7 +224,7 @@ def rate(
         finish: of the surfaces.
 
     Returns:
-        Values by the names of `results.strength.STRENGTH`, for the pair or for both gears [SI].
+        Values by the names of `results.strength_variables.STRENGTH`, for the pair or for both gears [SI].
 
     Source: ISO 6336-2 and ISO 6336-3, editions of 2019 or 2006, methods B; ISO 6336-1:2006, dynamic factor by
     method B or C and face load factor by method C; VDI 2736 Part 2 for the roots of plastic gears.

@@ -9,7 +9,7 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 from pitchpoint.gears.involute import involute
 
 __all__ = [

@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, model_validator
 
 from pitchpoint.errors import InputError
+from pitchpoint.gears.gears_table import BORE
 from pitchpoint.gears.planetary import PLANETS
-from pitchpoint.gears.table import BORE
 from pitchpoint.input.kinds import LIFE, LOAD_FACTOR
 from pitchpoint.input.quantities import Pair, Quantity, for_both, named
 from pitchpoint.input.tables import Table

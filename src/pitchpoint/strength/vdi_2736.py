@@ -8,7 +8,7 @@ force at the tip. The limit is Y_St sigma_FlimN with Y_St = 2, equation 13, in t
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 
 __all__ = ["contact_ratio_factor", "helix_factor"]
 

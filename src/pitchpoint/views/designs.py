@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pitchpoint.analyses.figures import efficiency_coverage
-from pitchpoint.runs.designs import MainFigure, main_results, shared_laws
+from pitchpoint.analyses.main_figures import efficiency_coverage
+from pitchpoint.runs.compared_designs import MainFigure, main_results, shared_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import law_title

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, zip_longest
 
-from pitchpoint.doubts import as_doubt
-from pitchpoint.runs.designs import MainFigure, main_results, shared_laws
+from pitchpoint.core.doubts import as_doubt
+from pitchpoint.runs.compared_designs import MainFigure, main_results, shared_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.columns import fitted, lines_of

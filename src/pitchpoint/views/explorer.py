@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.figures import efficiency_coverage, main_figures
+from pitchpoint.analyses.main_figures import efficiency_coverage, main_figures
 from pitchpoint.results.chosen_units import shown_in, unit_in_use
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.explore import Axis, Explored
@@ -22,9 +22,9 @@ from pitchpoint.views.figures import PALETTE, display, law_title, laws, layout, 
 from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.lines import folded, gapped, titled
 from pitchpoint.views.point import period_of
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.report import environment, packed, packed_plotly
 from pitchpoint.views.section import Animation
+from pitchpoint.views.section_registry import in_order
 
 __all__ = ["ExplorerPoint", "Reader", "explorer_page", "write_explorer"]
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.films import film_notes
-from pitchpoint.doubts import in_percent
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL
+from pitchpoint.analyses.solved_films import film_notes
+from pitchpoint.core.doubts import in_percent
+from pitchpoint.lubrication.ehl.ehl_registry import ISOTHERMAL
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show

@@ -11,15 +11,14 @@ from typing import Literal
 
 import xarray as xr
 
-from pitchpoint.analyses.figures import of_contact, point_by_valid_laws
-from pitchpoint.doubts import as_doubt
+from pitchpoint.analyses.main_figures import of_contact, point_by_valid_laws
+from pitchpoint.core.doubts import as_doubt
 from pitchpoint.results.target_rows import verdict_sentence
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.inputs import input_number, input_words
 from pitchpoint.views.point import by_members, driver_speed_ratio, ratio_words
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     OF_MESHES,
     KeyFigure,
@@ -30,6 +29,7 @@ from pitchpoint.views.section import (
     stages_together,
     variant_warnings,
 )
+from pitchpoint.views.section_registry import in_order
 from pitchpoint.views.sections.studies import is_swept, marked, swept_place
 
 __all__ = [

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from pitchpoint import units
-from pitchpoint.cases.inputs import DIMENSIONS, OIL, SOLIDS, STUDIES
 from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.record import OUTPUT
+from pitchpoint.cases.resolved_inputs import DIMENSIONS, OIL, SOLIDS, STUDIES
 from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity
 from pitchpoint.results.chosen_units import Choice, unit_choice, unit_in_use

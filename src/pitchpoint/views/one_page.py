@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from pitchpoint.analyses.figures import of_contact
+from pitchpoint.analyses.main_figures import of_contact
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.designs import input_tables, named_inputs

@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint._jax import double_precision
-from pitchpoint.kept import base_folder, prepared_folder, read_kept, write_kept
-from pitchpoint.published.registry import publication_of
+from pitchpoint.core.kept import base_folder, prepared_folder, read_kept, write_kept
+from pitchpoint.published.publication_registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.run import Outcome
@@ -24,7 +24,6 @@ from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
 from pitchpoint.views.inputs import recorded_units
 from pitchpoint.views.one_page import one_page
-from pitchpoint.views.registry import in_order
 from pitchpoint.views.section import (
     Block,
     Drawn,
@@ -38,6 +37,7 @@ from pitchpoint.views.section import (
     panels,
     variant_warnings,
 )
+from pitchpoint.views.section_registry import in_order
 
 if TYPE_CHECKING:
     import jinja2

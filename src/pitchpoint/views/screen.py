@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint.analyses.figures import efficiency_coverage
+from pitchpoint.analyses.main_figures import efficiency_coverage
 from pitchpoint.views.show import axis_title, described, displayed, number_text
 
 __all__ = ["cell", "efficiency_of", "head", "screen_value"]

@@ -8,7 +8,7 @@ from itertools import zip_longest
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from pitchpoint.programs import surroundings
+from pitchpoint.core.programs import surroundings
 from pitchpoint.registry import Deferred, code_at, enumerated
 from pitchpoint.results.by_stage import Label, of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES

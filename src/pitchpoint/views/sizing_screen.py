@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from pitchpoint import units
-from pitchpoint.doubts import GUESSED, in_percent
+from pitchpoint.core.doubts import GUESSED, in_percent
 from pitchpoint.registry import enumerated
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, families_by_reason
-from pitchpoint.sizing.table import Task
+from pitchpoint.sizing.task_table import Task
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, wrapped
 

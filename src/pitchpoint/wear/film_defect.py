@@ -4,7 +4,7 @@ from jaxtyping import Array, Float
 from scipy.constants import gas_constant
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, product_array
+from pitchpoint.core.factored import Numbers, product_array
 
 __all__ = ["fractional_film_defect"]
 

@@ -5,11 +5,11 @@ from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.lubrication.conditions import Conditions
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import solve_lines
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.programs import program
 
 __all__ = ["LEAST", "asperity_share"]
 

@@ -13,6 +13,8 @@ from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot, Surfaces
 from pitchpoint.contact.worn import Worn, WornAt, averaged, with_worn
+from pitchpoint.core.factored import Arrays, product_array
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.quasi_static import (
     Coupling,
     Design,
@@ -23,7 +25,6 @@ from pitchpoint.efficiency.quasi_static import (
     state,
 )
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, product_array
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.mesh import Mesh, has
 from pitchpoint.gears.pairs import flanks_in_turn
@@ -33,9 +34,8 @@ from pitchpoint.loading.tooth_compliance import TeethAt, teeth_at
 from pitchpoint.lubrication.conditions import UNITS, Conditions, evaluate
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
-from pitchpoint.lubrication.registry import AsperityLoad
+from pitchpoint.lubrication.lubrication_registry import AsperityLoad
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.programs import program
 from pitchpoint.wear.film_defect import fractional_film_defect
 from pitchpoint.wear.film_share import asperity_share
 

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers, log, square_root
+from pitchpoint.core.factored import Numbers, log, square_root
 from pitchpoint.lubrication import conditions
 
 __all__ = [

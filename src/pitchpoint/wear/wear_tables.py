@@ -8,7 +8,7 @@ from pitchpoint.gears.planetary import PLANETS
 from pitchpoint.input.kinds import HARDNESS, MOST_STAGES, Flag, Text
 from pitchpoint.input.quantities import Pair, Quantity, named
 from pitchpoint.input.tables import Table
-from pitchpoint.wear.registry import WEAR_LAWS
+from pitchpoint.wear.wear_registry import WEAR_LAWS
 
 __all__ = ["WEAR_LAND", "WearTable", "WornTable"]
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
 from pitchpoint.gears.ball_on_disc import MEMBERS
-from pitchpoint.gears.table import GearsTable, Load
+from pitchpoint.gears.gears_table import GearsTable, Load
 from pitchpoint.input.quantities import Quantity
 
 __all__ = ["BallOnDiscRig"]

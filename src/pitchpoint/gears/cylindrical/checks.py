@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import LEFT_OUT, REMARKED, Doubt
+from pitchpoint.core.doubts import LEFT_OUT, REMARKED, Doubt
+from pitchpoint.core.programs import program
+from pitchpoint.core.roots import find_root
 from pitchpoint.errors import Complaints, InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
-from pitchpoint.gears.designs import Faults, Number, over_designs, padded
+from pitchpoint.gears.design_groups import Faults, Number, over_designs, padded
 from pitchpoint.gears.involute import InvoluteGear, inverse_involute, involute
-from pitchpoint.programs import program
-from pitchpoint.roots import find_root
 
 if TYPE_CHECKING:
     from pitchpoint.gears.cylindrical.pair import CylindricalPair

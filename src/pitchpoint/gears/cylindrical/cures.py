@@ -10,7 +10,7 @@ from pitchpoint.errors import RUNS_WITH, Cure, InputError
 from pitchpoint.gears.cylindrical.checks import Remedy
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import FROM_CENTRE_DISTANCE, LEAST_TIP, CylindricalGears
-from pitchpoint.gears.table import ANGLE, DISTANCE, FILLET, RACK, SHIFT
+from pitchpoint.gears.gears_table import ANGLE, DISTANCE, FILLET, RACK, SHIFT
 from pitchpoint.input.quantities import Quantity
 
 __all__ = ["change_words", "cures", "error_with_cures"]

@@ -10,11 +10,13 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO, SLICES, lanes_for_contact_ratio
 from pitchpoint.gears.cylindrical.checks import cannot_run, check_cylindrical
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.gears.designs import (
+from pitchpoint.gears.design_groups import (
     Designs,
     Group,
     check_counts,
@@ -24,8 +26,6 @@ from pitchpoint.gears.designs import (
     select_designs,
 )
 from pitchpoint.gears.involute import usual_dedenda
-from pitchpoint.programs import program
-from pitchpoint.status import Code, Status
 
 __all__ = [
     "build_cylindrical_pair",

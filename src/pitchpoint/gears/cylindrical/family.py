@@ -23,7 +23,7 @@ from pitchpoint.gears.cylindrical.design import (
     cylindrical_pairs_apart,
     with_bores,
 )
-from pitchpoint.gears.cylindrical.inspection import backlash_limits
+from pitchpoint.gears.cylindrical.drawing_dimensions import backlash_limits
 from pitchpoint.gears.cylindrical.iso_286 import symmetrical_deviation
 from pitchpoint.gears.cylindrical.modified import (
     Modifications,

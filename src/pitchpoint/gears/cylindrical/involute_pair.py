@@ -12,8 +12,8 @@ from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.modifications import Relief
 from pitchpoint.contact.surface import FlankEnds, Spot, Surfaces
-from pitchpoint.factored import Arrays, Numbers
-from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions, plain_inertia
+from pitchpoint.core.factored import Arrays, Numbers
+from pitchpoint.core.roots import find_root, hypot
 from pitchpoint.gears.contact_lines import (
     InvoluteMesh,
     PathOfContact,
@@ -31,9 +31,15 @@ from pitchpoint.gears.involute import (
     transverse_angle,
 )
 from pitchpoint.gears.layers import DrawnPath, drawn_gear, layers
+from pitchpoint.gears.mesh_bodies import (
+    completed,
+    drawing,
+    independent,
+    main_dimensions,
+    plain_inertia,
+)
 from pitchpoint.gears.pairs import flanks_in_turn, planet_gears, spots_on_turning
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
-from pitchpoint.roots import find_root, hypot
 
 __all__ = ["InvolutePair", "LineOfAction", "zero_backlash_centre_distance"]
 

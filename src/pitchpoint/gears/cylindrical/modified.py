@@ -12,11 +12,11 @@ from pitchpoint._jax import array, jnp
 from pitchpoint.contact.deviations import ToothDeviations
 from pitchpoint.contact.modifications import Crowning, EndRelief, LeadSlope, Relief
 from pitchpoint.contact.surface import FlankEnds, Surface, Surfaces
-from pitchpoint.doubts import GUESSED, Doubt
+from pitchpoint.core.doubts import GUESSED, Doubt
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances, gear_at_its_limits, out_of_scope
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
-from pitchpoint.programs import program
 
 __all__ = ["FEWEST_SLICES", "Modifications", "class_deviations", "class_warnings", "modified"]
 

@@ -10,7 +10,7 @@ from pydantic_core import CoreSchema
 
 from pitchpoint.errors import InputError
 from pitchpoint.gears.cylindrical import MEMBERS, din_3967, iso_286
-from pitchpoint.gears.cylindrical.inspection import (
+from pitchpoint.gears.cylindrical.drawing_dimensions import (
     Toothing,
     allowance_for,
     backlash,
@@ -18,7 +18,7 @@ from pitchpoint.gears.cylindrical.inspection import (
     profile_shift_sum,
 )
 from pitchpoint.gears.cylindrical.iso_1328 import flank_tolerances
-from pitchpoint.gears.table import (
+from pitchpoint.gears.gears_table import (
     ANGLE,
     BORE,
     COMMON_WIDTH,

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
 from pitchpoint.gears.contact_lines import LARGEST_CONTACT_RATIO
 from pitchpoint.gears.rack_and_pinion.mesh import RackAndPinion
-from pitchpoint.programs import program
 
 __all__ = ["check_rack_and_pinion"]
 

@@ -8,19 +8,19 @@ from typing import Any
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import MassInertia, disc
 from pitchpoint.gears.contact_lines import lanes_for_contact_ratio
 from pitchpoint.gears.family import Family
 from pitchpoint.gears.involute import InvoluteGear, usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import MassInertia, disc
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.checks import check_rack_and_pinion
 from pitchpoint.gears.rack_and_pinion.mesh import RackAndPinion
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
-from pitchpoint.programs import program
 
 __all__ = ["FAMILY"]
 

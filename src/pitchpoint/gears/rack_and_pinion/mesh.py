@@ -9,8 +9,8 @@ from jaxtyping import Array, Bool, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot, Surfaces
-from pitchpoint.factored import Arrays, Numbers
-from pitchpoint.gears.bodies import drawing, main_dimensions, plain_inertia
+from pitchpoint.core.factored import Arrays, Numbers
+from pitchpoint.core.roots import hypot
 from pitchpoint.gears.contact_lines import (
     InvoluteMesh,
     PathOfContact,
@@ -21,11 +21,11 @@ from pitchpoint.gears.contact_lines import (
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.involute import InvoluteGear
 from pitchpoint.gears.layers import RIM, DrawnBody, DrawnPath, drawn_gear, layers
+from pitchpoint.gears.mesh_bodies import drawing, main_dimensions, plain_inertia
 from pitchpoint.gears.pairs import since_entry, spots_on_turning
 from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.gears.rack_and_pinion.rack import Rack
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
-from pitchpoint.roots import hypot
 
 __all__ = ["RackAndPinion"]
 

@@ -3,8 +3,7 @@
 from math import cos, pi
 from typing import Annotated, ClassVar, Literal
 
-from pitchpoint.gears.rack_and_pinion import MEMBERS
-from pitchpoint.gears.table import (
+from pitchpoint.gears.gears_table import (
     ANGLE,
     BORE,
     COMMON_WIDTH,
@@ -18,6 +17,7 @@ from pitchpoint.gears.table import (
     GearsTable,
     Load,
 )
+from pitchpoint.gears.rack_and_pinion import MEMBERS
 from pitchpoint.input.quantities import Pair, Quantity
 
 __all__ = ["RackAndPinionGears"]

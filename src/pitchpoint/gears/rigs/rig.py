@@ -8,7 +8,7 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
 from pitchpoint.contact.surface import Spot
-from pitchpoint.factored import Arrays, Numbers
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.gears.coordinates import Coordinate
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.mesh import Mesh

@@ -7,9 +7,9 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
 from pitchpoint.contact.surface import Surfaces
-from pitchpoint.factored import Numbers
-from pitchpoint.gears.bodies import independent
+from pitchpoint.core.factored import Numbers
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
+from pitchpoint.gears.mesh_bodies import independent
 from pitchpoint.gears.rigs.rig import Rig
 
 __all__ = ["TwinDisc"]

@@ -8,7 +8,8 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.roots import hypot
 from pitchpoint.gears.gear_body import GearBody
 from pitchpoint.gears.on_balls import Body
 from pitchpoint.gears.strain_wave import MEMBERS
@@ -19,7 +20,6 @@ from pitchpoint.gears.strain_wave.in_series import InSeries
 from pitchpoint.gears.strain_wave.ring_compliance import ring_compliance, ring_parts
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.materials.solids import Solid
-from pitchpoint.roots import hypot
 
 __all__ = ["StrainWaveBody", "end_of_wave", "left_behind"]
 

@@ -3,10 +3,10 @@
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.roots import find_root
 from pitchpoint.gears.strain_wave.flexspline_tooth import unit_circle_place
 from pitchpoint.gears.strain_wave.groove import Groove
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
-from pitchpoint.roots import find_root
 
 __all__ = ["FLATTENED", "LEVELS", "curvature_in_contact"]
 

@@ -12,9 +12,11 @@ import numpy as np
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.doubts import Doubt, fails, in_percent
+from pitchpoint.core.doubts import Doubt, fails, in_percent
+from pitchpoint.core.programs import fast_program, program
+from pitchpoint.core.status import Code, Status
 from pitchpoint.errors import InputError
-from pitchpoint.gears.designs import Designs, Faults, Group, Number, check_counts
+from pitchpoint.gears.design_groups import Designs, Faults, Group, Number, check_counts
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_bearing
 from pitchpoint.gears.strain_wave.drive import WINDOW, StrainWave, Survey, lanes_for_pairs, survey
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
@@ -33,13 +35,15 @@ from pitchpoint.gears.strain_wave.groove import (
     tip_with_land,
 )
 from pitchpoint.gears.strain_wave.in_series import Behind, Cup, InSeries, in_series
-from pitchpoint.gears.strain_wave.load_limits import curvature_change
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS, rim_by_strain
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, WAVE_SHAPES, DoubleArcForm
+from pitchpoint.gears.strain_wave.strain_wave_registry import (
+    DOUBLE_ARCS,
+    WAVE_SHAPES,
+    DoubleArcForm,
+)
+from pitchpoint.gears.strain_wave.strength_estimates import curvature_change
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
-from pitchpoint.programs import fast_program, program
-from pitchpoint.status import Code, Status
 
 __all__ = [
     "InvoluteForm",

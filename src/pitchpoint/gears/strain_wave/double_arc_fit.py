@@ -8,15 +8,15 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.programs import program
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.gears.strain_wave.design import LEAST_LAND, RIDGE, SWEPT_ACCURACY, build_strain_wave
 from pitchpoint.gears.strain_wave.drive import StrainWave, nearest_points
 from pitchpoint.gears.strain_wave.flexspline_tooth import DoubleArcFlank
 from pitchpoint.gears.strain_wave.groove import Groove, SplineTips, swept, tip_with_land
-from pitchpoint.gears.strain_wave.registry import ARCS, DOUBLE_ARCS, DoubleArcForm
+from pitchpoint.gears.strain_wave.strain_wave_registry import ARCS, DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import TERMS, NeutralLine
-from pitchpoint.programs import program
 
 __all__ = ["DoubleArcFit", "Merit", "fit_double_arc", "merit_of"]
 

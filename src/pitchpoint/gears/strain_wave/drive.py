@@ -10,10 +10,11 @@ from jaxtyping import Array, Bool, Float, Int, Shaped
 from pitchpoint._jax import jax, jnp
 from pitchpoint.contact.contacts import Contacts, Shape, contact_velocity
 from pitchpoint.contact.surface import Spot, Surfaces, other_side
-from pitchpoint.factored import Arrays, Numbers
-from pitchpoint.gears.bodies import completed, drawing, independent, main_dimensions
+from pitchpoint.core.factored import Arrays, Numbers
+from pitchpoint.core.roots import find_root, hypot
 from pitchpoint.gears.coordinates import AXIAL, Coordinate
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import completed, drawing, independent, main_dimensions
 from pitchpoint.gears.pairs import (
     WAVE,
     flanks_in_turn,
@@ -35,7 +36,6 @@ from pitchpoint.gears.strain_wave.in_series import InSeries
 from pitchpoint.gears.strain_wave.tooth_motion import PassingPoint, ToothMotion
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 from pitchpoint.gears.tooth_section import RING_RIM, ToothSection, chebyshev_nodes, tooth_sections
-from pitchpoint.roots import find_root, hypot
 
 __all__ = [
     "WINDOW",

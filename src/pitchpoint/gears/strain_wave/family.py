@@ -7,9 +7,9 @@ from typing import Any
 
 from pitchpoint.contact.surface import Surfaces
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import MassInertia, combined_inertia, disc
 from pitchpoint.gears.family import Family, Followed, Records, Solids, Turning, waves
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import MassInertia, combined_inertia, disc
 from pitchpoint.gears.strain_wave.ball_bearing import Balls, ball_circle
 from pitchpoint.gears.strain_wave.design import (
     InvoluteForm,
@@ -20,7 +20,7 @@ from pitchpoint.gears.strain_wave.design import (
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.in_series import Behind, part_dimensions
 from pitchpoint.gears.strain_wave.proportions import PROPORTIONS
-from pitchpoint.gears.strain_wave.registry import DOUBLE_ARCS, DoubleArcForm
+from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS, DoubleArcForm
 from pitchpoint.gears.strain_wave.table import (
     BallBearing,
     DoubleArcTooth,

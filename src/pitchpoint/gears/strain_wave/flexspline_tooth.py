@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.involute import involute
 
 __all__ = ["ArcChain", "DoubleArcFlank", "FlexsplineFlank", "InvoluteFlank", "unit_circle_place"]

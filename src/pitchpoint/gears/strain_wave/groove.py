@@ -7,9 +7,9 @@ import numpy as np
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.roots import hypot
 from pitchpoint.gears.strain_wave.flexspline_tooth import InvoluteFlank
 from pitchpoint.gears.strain_wave.tooth_motion import ToothMotion
-from pitchpoint.roots import hypot
 
 __all__ = [
     "NEWTON_STEPS",

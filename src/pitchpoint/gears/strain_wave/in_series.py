@@ -9,8 +9,8 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
+from pitchpoint.core.factored import Arrays
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.gears.strain_wave.flexible_ring import FlexibleRing
 from pitchpoint.gears.strain_wave.proportions import DIMENSIONS, PROPORTIONS
 from pitchpoint.materials.solids import Solid

@@ -7,10 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import BeforeValidator, Field, Tag, model_validator
 
 from pitchpoint.errors import InputError
-from pitchpoint.gears.strain_wave import MEMBERS
-from pitchpoint.gears.strain_wave.proportions import DIMENSIONS
-from pitchpoint.gears.strain_wave.registry import ARCS, DOUBLE_ARCS, WAVE_SHAPES
-from pitchpoint.gears.table import (
+from pitchpoint.gears.gears_table import (
     ANGLE,
     BORE,
     MODULE,
@@ -21,6 +18,9 @@ from pitchpoint.gears.table import (
     WavesAround,
     check_waves,
 )
+from pitchpoint.gears.strain_wave import MEMBERS
+from pitchpoint.gears.strain_wave.proportions import DIMENSIONS
+from pitchpoint.gears.strain_wave.strain_wave_registry import ARCS, DOUBLE_ARCS, WAVE_SHAPES
 from pitchpoint.input.quantities import Pair, Quantity, named
 from pitchpoint.input.tables import Table, table_by_key
 

@@ -4,7 +4,7 @@ import equinox as eqx
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.gears.strain_wave.flexspline_tooth import FlexsplineFlank, unit_circle_place
 from pitchpoint.gears.strain_wave.wave_generator import NeutralLine
 

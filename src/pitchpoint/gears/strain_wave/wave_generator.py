@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 
 __all__ = ["TERMS", "NeutralLine", "cosine", "elliptical", "four_forces", "two_rollers"]
 

@@ -4,8 +4,8 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
-from pitchpoint.roots import find_root
+from pitchpoint.core.factored import Numbers
+from pitchpoint.core.roots import find_root
 
 __all__ = ["TorusFace", "nearest_across_face"]
 

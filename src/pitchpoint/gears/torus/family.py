@@ -9,8 +9,8 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jnp
 from pitchpoint.contact.surface import Surfaces
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
-from pitchpoint.gears.bodies import MassInertia, disc
 from pitchpoint.gears.cylindrical.checks import check_cylindrical
 from pitchpoint.gears.cylindrical.design import build_cylindrical_pair, with_bores
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
@@ -19,10 +19,10 @@ from pitchpoint.gears.family import Family, waves
 from pitchpoint.gears.involute import usual_depths
 from pitchpoint.gears.layers import LAYERS, labels
 from pitchpoint.gears.mesh import Mesh
+from pitchpoint.gears.mesh_bodies import MassInertia, disc
 from pitchpoint.gears.torus import MEMBERS
 from pitchpoint.gears.torus.pair import TorusPair
 from pitchpoint.gears.torus.table import TorusGears
-from pitchpoint.programs import program
 
 __all__ = ["FAMILY", "middle_pair", "torus_pair"]
 

@@ -8,8 +8,8 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.contacts import Contacts, Shape
-from pitchpoint.gears.bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.cylindrical.involute_pair import InvolutePair
+from pitchpoint.gears.mesh_bodies import main_dimensions, plain_inertia
 from pitchpoint.gears.pairs import largest_inclination, since_entry
 from pitchpoint.gears.tooth_section import ToothSection, tooth_sections
 from pitchpoint.gears.torus.face import TorusFace, nearest_across_face

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import model_validator
 
 from pitchpoint.errors import InputError
-from pitchpoint.gears.table import (
+from pitchpoint.gears.gears_table import (
     ANGLE,
     BORE,
     DISTANCE,

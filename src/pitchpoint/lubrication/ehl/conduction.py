@@ -6,7 +6,7 @@ import equinox as eqx
 from jax.typing import ArrayLike
 from jaxtyping import Float
 
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials._leaves import float64_array
 

@@ -12,18 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax
-from pitchpoint.doubts import GUESSED, WITHHELD, Checks, Doubt, in_percent
+from pitchpoint.core.doubts import GUESSED, WITHHELD, Checks, Doubt, in_percent
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.ehl_registry import COARSE, MOST_LINE_NODES
 from pitchpoint.lubrication.ehl.fields import LineFilm
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
-from pitchpoint.lubrication.ehl.registry import COARSE, MOST_LINE_NODES
 from pitchpoint.lubrication.ehl.texture import Rough
 from pitchpoint.lubrication.flash_temperature import LEAST_PECLET
 from pitchpoint.lubrication.groups import load_parameter
 from pitchpoint.materials.fluid import Fluid
-from pitchpoint.materials.registry import SHEAR_STRESS
-from pitchpoint.status import Code
+from pitchpoint.materials.materials_registry import SHEAR_STRESS
 
 __all__ = [
     "GRID",

@@ -8,10 +8,10 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import LineGrid, parabola_minimum
+from pitchpoint.core.factored import Arrays
 from pitchpoint.lubrication.ehl.heat import Temperatures, line_temperatures
 from pitchpoint.lubrication.ehl.line import NEAR, LineContact, LineProblem
+from pitchpoint.lubrication.ehl.line_grid import LineGrid, parabola_minimum
 from pitchpoint.lubrication.ehl.work import fractional_film_content, shear_stress, work_of_pressure
 
 __all__ = ["LineFilm", "line_film"]

@@ -6,12 +6,17 @@ from typing import Annotated, Final, Literal
 
 from pydantic import AfterValidator, BeforeValidator, model_validator
 
-from pitchpoint.contact.registry import END_PROFILES, SUMMITS, USUAL_SUMMITS, SummitConstants
+from pitchpoint.contact.contact_registry import (
+    END_PROFILES,
+    SUMMITS,
+    USUAL_SUMMITS,
+    SummitConstants,
+)
 from pitchpoint.errors import InputError
 from pitchpoint.input.kinds import COEFFICIENT, RATIO, Flag, Text
 from pitchpoint.input.quantities import Quantity, named
 from pitchpoint.input.tables import Table
-from pitchpoint.lubrication.ehl.registry import (
+from pitchpoint.lubrication.ehl.ehl_registry import (
     ASPERITIES,
     MOST_LINE_NODES,
     MOST_PATCH_NODES,
@@ -19,9 +24,13 @@ from pitchpoint.lubrication.ehl.registry import (
     THERMAL,
     coarser_count,
 )
-from pitchpoint.materials.registry import DENSITY as LAWS_OF_DENSITY
-from pitchpoint.materials.registry import SHEAR_STRESS, USUAL_SHEAR_STRESS, USUAL_VISCOSITY
-from pitchpoint.materials.registry import VISCOSITY as LAWS_OF_VISCOSITY
+from pitchpoint.materials.materials_registry import DENSITY as LAWS_OF_DENSITY
+from pitchpoint.materials.materials_registry import (
+    SHEAR_STRESS,
+    USUAL_SHEAR_STRESS,
+    USUAL_VISCOSITY,
+)
+from pitchpoint.materials.materials_registry import VISCOSITY as LAWS_OF_VISCOSITY
 
 __all__ = ["MEMBERS", "OF_VISCOSITY", "FilmTable", "HeightTable", "HeightTables"]
 

@@ -8,10 +8,10 @@ import equinox as eqx
 from jaxtyping import Array, Float, Int
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import LineGrid
 from pitchpoint.lubrication.ehl.line import LineContact, LineProblem
+from pitchpoint.lubrication.ehl.line_grid import LineGrid
 from pitchpoint.lubrication.ehl.newton import ENOUGH, LineIterate, newton_on_line, residual
 from pitchpoint.lubrication.ehl.strips import (
     MOST_TURNS,

@@ -10,9 +10,9 @@ from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
 from pitchpoint.contact.hertz import line_half_width, line_pressure
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import LineGrid, parabola_minimum, restricted
+from pitchpoint.lubrication.ehl.line_grid import LineGrid, parabola_minimum, restricted
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth, Texture

@@ -12,15 +12,19 @@ from jax.typing import ArrayLike
 from pitchpoint.contact.asperities import ETA_BETA_SIGMA, SIGMA_OVER_BETA
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.conduction import Conduction
+from pitchpoint.lubrication.ehl.ehl_registry import ISOTHERMAL, SMOOTH, THERMAL, USUAL_ASPERITIES
 from pitchpoint.lubrication.ehl.line import FLOODED, LineContact
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
-from pitchpoint.lubrication.ehl.registry import ISOTHERMAL, SMOOTH, THERMAL, USUAL_ASPERITIES
 from pitchpoint.lubrication.ehl.solve import NODES
 from pitchpoint.lubrication.ehl.texture import BOUNDARY_FRICTION, Rough
 from pitchpoint.lubrication.flash_temperature import Conductor
 from pitchpoint.materials.fluid import Fluid
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.materials.registry import USUAL_DENSITY, USUAL_SHEAR_STRESS, USUAL_VISCOSITY
+from pitchpoint.materials.materials_registry import (
+    USUAL_DENSITY,
+    USUAL_SHEAR_STRESS,
+    USUAL_VISCOSITY,
+)
 
 __all__ = ["FilmModel"]
 

@@ -11,8 +11,8 @@ from jaxtyping import Array, Float, Int
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.lubrication.ehl.grid import LineGrid, prolongation
 from pitchpoint.lubrication.ehl.line import LineProblem
+from pitchpoint.lubrication.ehl.line_grid import LineGrid, prolongation
 from pitchpoint.lubrication.ehl.reynolds import REACH, banded
 
 __all__ = [

@@ -10,12 +10,12 @@ from typing import Final
 import numpy as np
 from jaxtyping import Array, Float
 
+from pitchpoint.core.programs import program
 from pitchpoint.errors import InputError
-from pitchpoint.lubrication.ehl.grid import grid
 from pitchpoint.lubrication.ehl.line import LineContact, length_of
+from pitchpoint.lubrication.ehl.line_grid import grid
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.patch.roughness import SHOWN, check_cover, check_map
-from pitchpoint.programs import program
 
 __all__ = ["check_profiles"]
 

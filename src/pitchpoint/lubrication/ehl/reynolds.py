@@ -6,8 +6,8 @@ import equinox as eqx
 from jaxtyping import Array, Bool, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
-from pitchpoint.lubrication.ehl.grid import Along, LineGrid
+from pitchpoint.core.factored import Arrays
+from pitchpoint.lubrication.ehl.line_grid import Along, LineGrid
 from pitchpoint.lubrication.ehl.texture import Texture
 from pitchpoint.materials.fluid import Fluid
 

@@ -13,11 +13,13 @@ from jaxtyping import Array, Bool, Float, Int
 from numpy.typing import NDArray
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import fast_program, program
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.doubts import SolvedLines, check_line_contact, line_film_warnings
+from pitchpoint.lubrication.ehl.ehl_registry import coarser_count
 from pitchpoint.lubrication.ehl.fields import LineFilm, line_film
-from pitchpoint.lubrication.ehl.grid import ENDS, Ends, LineGrid, grid, prolongation
 from pitchpoint.lubrication.ehl.heat import (
     alternating_solution,
     line_heat_defect,
@@ -30,6 +32,13 @@ from pitchpoint.lubrication.ehl.line import (
     LineProblem,
     problem_of,
 )
+from pitchpoint.lubrication.ehl.line_grid import ENDS, Ends, LineGrid, grid, prolongation
+from pitchpoint.lubrication.ehl.line_response import (
+    load_and_approach_change,
+    pushed_rest,
+    solution_response,
+    stiffness_and_damping,
+)
 from pitchpoint.lubrication.ehl.newton import (
     ENOUGH,
     LineIterate,
@@ -41,16 +50,7 @@ from pitchpoint.lubrication.ehl.newton import (
 )
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap
 from pitchpoint.lubrication.ehl.profiles import check_profiles
-from pitchpoint.lubrication.ehl.registry import coarser_count
-from pitchpoint.lubrication.ehl.response import (
-    load_and_approach_change,
-    pushed_rest,
-    solution_response,
-    stiffness_and_damping,
-)
 from pitchpoint.lubrication.ehl.strips import WARM_ENOUGH
-from pitchpoint.programs import fast_program, program
-from pitchpoint.status import Code
 
 __all__ = [
     "LEAST_FALL",

@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import Along
 from pitchpoint.lubrication.ehl.line import SLOWEST
+from pitchpoint.lubrication.ehl.line_grid import Along
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.work import fractional_film_content, pressure_flow, shear_stress
 from pitchpoint.lubrication.flash_temperature import Conductor, moving_strip

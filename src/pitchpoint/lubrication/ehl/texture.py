@@ -15,9 +15,9 @@ from pitchpoint.contact.asperities import (
     greenwood_williamson_1966,
     hu_1994,
 )
+from pitchpoint.core.factored import Arrays, Numbers
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays, Numbers
-from pitchpoint.lubrication.ehl.registry import ASPERITIES, USUAL_ASPERITIES
+from pitchpoint.lubrication.ehl.ehl_registry import ASPERITIES, USUAL_ASPERITIES
 from pitchpoint.lubrication.flow_factors import mean_gap, patir_cheng_1978
 from pitchpoint.materials._leaves import float64_array
 

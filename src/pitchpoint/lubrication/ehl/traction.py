@@ -9,14 +9,14 @@ import numpy as np
 from jax.typing import ArrayLike
 from numpy.typing import NDArray
 
+from pitchpoint.core.factored import Numbers
+from pitchpoint.core.status import Code
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.factored import Numbers
 from pitchpoint.lubrication.ehl.line import LineContact
 from pitchpoint.lubrication.ehl.model import FilmModel
 from pitchpoint.lubrication.ehl.solve import Films, solve_lines
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import FrictionLaw
 from pitchpoint.materials.lubricants import Lubricant
-from pitchpoint.status import Code
 
 __all__ = ["EHL_LINE", "FilmTraction", "ehl_line"]
 

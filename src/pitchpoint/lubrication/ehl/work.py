@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Array
 
 from pitchpoint._jax import jnp
-from pitchpoint.lubrication.ehl.grid import Along, LineGrid
+from pitchpoint.lubrication.ehl.line_grid import Along, LineGrid
 from pitchpoint.lubrication.ehl.reynolds import Flow, upwind
 
 __all__ = [

@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax
-from pitchpoint.gears.bodies import plain_inertia
+from pitchpoint.core.programs import program
 from pitchpoint.gears.contact_lines import line_of_action
 from pitchpoint.gears.cylindrical.pair import CylindricalPair
 from pitchpoint.gears.cylindrical.table import CylindricalGears
+from pitchpoint.gears.mesh_bodies import plain_inertia
 from pitchpoint.gears.rated_pair import bare_pair
-from pitchpoint.programs import program
 from pitchpoint.published.publication import ReadingPoint
 
 __all__ = ["equivalent_mass", "readings", "undercut_limit"]

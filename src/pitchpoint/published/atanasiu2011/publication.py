@@ -130,7 +130,7 @@ def _in_motion(point: ReadingPoint) -> Read:
     """Courses of a pair; the code is imported when a case asks for them."""
     if not isinstance(point.formulas, PairInMotion):
         return {}
-    from pitchpoint.published.atanasiu2011.motion import readings
+    from pitchpoint.published.atanasiu2011.pair_in_motion import readings
 
     return readings(point)
 

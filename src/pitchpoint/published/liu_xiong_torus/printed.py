@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from pitchpoint._jax import array, jax, jnp
 from pitchpoint.contact.ellipse import hamrock_brewe_1983, hertz_1881
 from pitchpoint.contact.hertz import line_pressure
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import program
 from pitchpoint.efficiency.quasi_static import Design, Operation
 from pitchpoint.errors import ConvergenceError, InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.gears.pairs import largest_inclination
 from pitchpoint.gears.torus.family import middle_pair
@@ -22,9 +23,8 @@ from pitchpoint.gears.torus.table import TorusGears
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.lubrication.film_thickness import dowson_higginson_1959, hamrock_dowson_1977
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
 from pitchpoint.published.liu_xiong_torus import steady
-from pitchpoint.published.liu_xiong_torus.figures import (
+from pitchpoint.published.liu_xiong_torus.printed_figures import (
     CYCLE_COURSES,
     INSTANTS,
     LINES,
@@ -32,7 +32,7 @@ from pitchpoint.published.liu_xiong_torus.figures import (
     cycle_places,
     motion_figures,
 )
-from pitchpoint.published.liu_xiong_torus.motion import Piece, TorusDrive, torus_motion
+from pitchpoint.published.liu_xiong_torus.printed_motion import Piece, TorusDrive, torus_motion
 from pitchpoint.published.liu_xiong_torus.publication import PAIRS
 from pitchpoint.published.liu_xiong_torus.steady import TorusSprings
 from pitchpoint.published.liu_xiong_torus.stiffness import library_stiffness, linear_interpolation

@@ -7,21 +7,26 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.contact.contact_registry import ELLIPTIC_CONTACT
 from pitchpoint.contact.contacts import total
-from pitchpoint.contact.registry import ELLIPTIC_CONTACT
-from pitchpoint.dynamics.bodies import Body, radial_bearings
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
+from pitchpoint.dynamics.dynamics_registry import CONTACT_LAWS
 from pitchpoint.dynamics.excitation import ErrorOrders
 from pitchpoint.dynamics.grid import PeriodGrid
 from pitchpoint.dynamics.modes import modes
+from pitchpoint.dynamics.moving_bodies import Body, radial_bearings
 from pitchpoint.dynamics.passage import passage, polynomial
-from pitchpoint.dynamics.registry import CONTACT_LAWS
 from pitchpoint.dynamics.right_hand_side import MovingMesh, relaxation_time
 from pitchpoint.dynamics.steady_motion import Motion, film, steady_motion
 from pitchpoint.efficiency.quasi_static import Design, Models, Operation
-from pitchpoint.loading.registry import LOAD_SHARING
-from pitchpoint.lubrication.registry import FILM_THICKNESS, LAWS, ROLLING_RESISTANCE, FilmThickness
-from pitchpoint.programs import program
-from pitchpoint.status import Code
+from pitchpoint.loading.loading_registry import LOAD_SHARING
+from pitchpoint.lubrication.lubrication_registry import (
+    FILM_THICKNESS,
+    LAWS,
+    ROLLING_RESISTANCE,
+    FilmThickness,
+)
 
 __all__ = ["TorusSprings", "corrected", "steady_figures"]
 

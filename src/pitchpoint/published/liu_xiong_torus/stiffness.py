@@ -5,12 +5,12 @@ from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import program
 from pitchpoint.gears.mesh import Mesh
 from pitchpoint.loading.compliance import slice_stiffness
 from pitchpoint.loading.tooth_compliance import Terms
 from pitchpoint.materials.solids import Solid
-from pitchpoint.programs import program
 
 __all__ = ["library_stiffness", "linear_interpolation"]
 

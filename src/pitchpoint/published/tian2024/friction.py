@@ -5,9 +5,9 @@ from functools import partial
 from jaxtyping import Float
 
 from pitchpoint._jax import jnp
-from pitchpoint.factored import Numbers
+from pitchpoint.core.factored import Numbers
 from pitchpoint.lubrication.friction_coefficient import xu_2007
-from pitchpoint.lubrication.registry import FrictionLaw
+from pitchpoint.lubrication.lubrication_registry import FrictionLaw
 
 __all__ = [
     "METHOD_1",

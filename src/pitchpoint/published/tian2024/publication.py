@@ -164,7 +164,7 @@ def _on_path(point: ReadingPoint) -> Read:
     """Courses of a pair; the code is imported when a case asks for them."""
     if not isinstance(point.formulas, PairOnPath):
         return {}
-    from pitchpoint.published.tian2024.path import readings
+    from pitchpoint.published.tian2024.pair_on_path import readings
 
     return readings(point)
 

@@ -356,7 +356,7 @@ def _films(point: ReadingPoint) -> Read:
     """Films of the zone; the solver is imported when a case asks for them."""
     if not isinstance(point.formulas, ZoneFilms) or point.formulas.solves == "nothing":
         return {}
-    from pitchpoint.published.xu2021.films import films_at
+    from pitchpoint.published.xu2021.zone_films import films_at
 
     return films_at(point)
 

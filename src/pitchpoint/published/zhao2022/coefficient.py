@@ -12,15 +12,15 @@ from math import cos
 import numpy as np
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
 from pitchpoint.gears.strain_wave.drive import StrainWave
 from pitchpoint.gears.strain_wave.table import StrainWaveGears
 from pitchpoint.lubrication.asperity_load import masjedi_khonsari_2012_regression
 from pitchpoint.lubrication.flash_temperature import Conductor, shared_flash
-from pitchpoint.programs import program
 from pitchpoint.published.publication import ReadingPoint
 from pitchpoint.published.zhao2022.printed import HALF_ZONE
 from pitchpoint.published.zhao2022.table import FlankWear, StatedContact
-from pitchpoint.status import Code
 from pitchpoint.wear.film_defect import fractional_film_defect
 from pitchpoint.wear.laws import janakiraman_2013
 

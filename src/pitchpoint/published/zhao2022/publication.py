@@ -374,7 +374,7 @@ PUBLICATION = Publication(
     readings=(
         "pitchpoint.published.zhao2022.printed:readings",
         "pitchpoint.published.conjugate:readings",
-        "pitchpoint.published.zhao2022.wear:readings",
+        "pitchpoint.published.zhao2022.flexspline_wear:readings",
         "pitchpoint.published.zhao2022.conjugate_wear:readings",
     ),
     variables={

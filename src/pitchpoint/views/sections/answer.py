@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import (
+from pitchpoint.analyses.main_figures import (
     CONTACT,
     REACTIONS,
     bearing_loads_by_name,
@@ -20,7 +20,7 @@ from pitchpoint.analyses.figures import (
     why_not,
 )
 from pitchpoint.cases.built_drive import MEETINGS, TRAIN_PERIOD
-from pitchpoint.cases.inputs import OIL
+from pitchpoint.cases.resolved_inputs import OIL
 from pitchpoint.results.by_stage import of_stage, stages_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome

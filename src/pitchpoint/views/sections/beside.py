@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.running import TORQUES
-from pitchpoint.doubts import doubts_of
+from pitchpoint.core.doubts import doubts_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
 from pitchpoint.views.figures import (

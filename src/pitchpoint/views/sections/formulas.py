@@ -11,10 +11,10 @@ import xarray as xr
 
 from pitchpoint.analyses.studies import PREFIX, is_study
 from pitchpoint.cases.keys import quantity_at
+from pitchpoint.core.status import Code
 from pitchpoint.published.publication import Beside, Curves, Maps
-from pitchpoint.published.registry import publication_of
+from pitchpoint.published.publication_registry import publication_of
 from pitchpoint.runs.run import Outcome
-from pitchpoint.status import Code
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.inputs import quantity_text

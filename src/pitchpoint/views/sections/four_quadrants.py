@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import (
+from pitchpoint.analyses.main_figures import (
     HOLDING,
     HOLDING_BANDS,
     coverage_sentences,
     error_words,
     held_at_operation,
 )
-from pitchpoint.doubts import in_percent
+from pitchpoint.core.doubts import in_percent
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show
 from pitchpoint.views.figures import laws

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from pitchpoint.analyses.figures import MAIN
+from pitchpoint.analyses.main_figures import MAIN
 from pitchpoint.views import section, show
 from pitchpoint.views.figures import laws
 from pitchpoint.views.sections.back_driving import back_driving

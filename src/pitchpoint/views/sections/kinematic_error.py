@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import error_ranges
+from pitchpoint.analyses.main_figures import error_ranges
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import CAMPBELL, OF_COURSE, point_by_valid_laws
+from pitchpoint.analyses.main_figures import CAMPBELL, OF_COURSE, point_by_valid_laws
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show

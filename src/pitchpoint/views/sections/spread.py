@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pitchpoint.analyses.figures import out_of_range
+from pitchpoint.analyses.main_figures import out_of_range
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import law_title, laws

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import doubts_of
-from pitchpoint.published.registry import publication_of
+from pitchpoint.core.doubts import doubts_of
+from pitchpoint.published.publication_registry import publication_of
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import doubts_of, ranked_doubts, without_repeats
+from pitchpoint.core.doubts import doubts_of, ranked_doubts, without_repeats
 from pitchpoint.results.by_stage import as_label
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import section, show

@@ -7,10 +7,10 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint import units
-from pitchpoint.analyses.figures import CONTACT, MAIN, RATING, coverage_sentences, of_contact
+from pitchpoint.analyses.main_figures import CONTACT, MAIN, RATING, coverage_sentences, of_contact
 from pitchpoint.analyses.studies import is_study
 from pitchpoint.cases.keys import quantity_at
-from pitchpoint.doubts import doubts_of, ranked_doubts
+from pitchpoint.core.doubts import doubts_of, ranked_doubts
 from pitchpoint.registry import enumerated
 from pitchpoint.results.chosen_units import unit_in_use
 from pitchpoint.results.rounding import ROUNDING

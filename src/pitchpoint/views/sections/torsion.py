@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import WIND_UP
+from pitchpoint.analyses.main_figures import WIND_UP
 from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot

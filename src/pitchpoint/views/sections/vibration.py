@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.analyses.figures import VIBRATION as FIGURES
+from pitchpoint.analyses.main_figures import VIBRATION as FIGURES
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot

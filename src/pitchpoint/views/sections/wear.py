@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from pitchpoint.doubts import doubts_of
+from pitchpoint.core.doubts import doubts_of
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import figures as plot
 from pitchpoint.views import section, show
 from pitchpoint.views.lines import titled
 from pitchpoint.views.point import named_members
 from pitchpoint.views.screen import head
-from pitchpoint.wear.stages import SEVERE, SEVERE_BY
+from pitchpoint.wear.wear_stages import SEVERE, SEVERE_BY
 
 __all__ = ["wear_blocks", "wear_facts", "wear_printed"]
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
-from pitchpoint.factored import Arrays
+from pitchpoint.core.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
 from pitchpoint.lubrication.ehl.reynolds import at_faces, third_order, upwind
 from pitchpoint.lubrication.ehl.work import specific_volume

@@ -11,8 +11,8 @@ from jaxtyping import Array, Float
 from pitchpoint._jax import jnp
 from pitchpoint.contact.gaps import missing_along
 from pitchpoint.contact.surface import Surface
+from pitchpoint.core.factored import Arrays
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
 from pitchpoint.lubrication.ehl.line import FLOODED
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
 from pitchpoint.lubrication.ehl.doubts import of_grid
+from pitchpoint.lubrication.ehl.ehl_registry import MOST_PATCH_NODES
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import FEWEST, Layout, PatchProblem, problem_on
 from pitchpoint.lubrication.ehl.patch.newton import CAREFUL, ENOUGH, newton_on_patch
@@ -22,7 +23,6 @@ from pitchpoint.lubrication.ehl.patch.solve import (
     gap_on,
     warm_start,
 )
-from pitchpoint.lubrication.ehl.registry import MOST_PATCH_NODES
 
 __all__ = ["OPENS", "REMAINS", "grid_errors", "of_patches"]
 

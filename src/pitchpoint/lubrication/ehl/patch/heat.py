@@ -9,10 +9,10 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jax, jnp
+from pitchpoint.core.factored import Arrays
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.conduction import Conduction
-from pitchpoint.lubrication.ehl.grid import NodeRow
+from pitchpoint.lubrication.ehl.line_grid import NodeRow
 from pitchpoint.lubrication.ehl.patch.balance import heat_beside, work
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.layout import PatchProblem

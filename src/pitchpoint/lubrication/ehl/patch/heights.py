@@ -7,8 +7,8 @@ from jax.typing import ArrayLike
 from jaxtyping import Array, Float
 
 from pitchpoint._jax import jnp
+from pitchpoint.core.factored import Arrays
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.materials._leaves import float64_array
 
 __all__ = ["HeightMap", "lowered"]

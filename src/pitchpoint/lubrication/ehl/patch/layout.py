@@ -15,16 +15,16 @@ from pitchpoint.contact.dry_contact import pressed
 from pitchpoint.contact.ellipse import Ellipse, hertz_1881
 from pitchpoint.contact.half_space import HalfSpace, graded_edges, half_space
 from pitchpoint.contact.hertz import line_half_width, line_pressure
+from pitchpoint.core.factored import Arrays
+from pitchpoint.core.programs import fast_program, program
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.line import LEAST, SLOWEST
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.heights import HeightMap, lowered
 from pitchpoint.lubrication.ehl.reynolds import Flow
 from pitchpoint.lubrication.ehl.texture import Smooth
 from pitchpoint.lubrication.film_thickness import moes_1992
-from pitchpoint.programs import fast_program, program
-from pitchpoint.status import Code
 
 __all__ = [
     "FEWEST",

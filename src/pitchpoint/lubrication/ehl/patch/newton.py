@@ -10,9 +10,9 @@ from jaxtyping import Array, Bool, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax, jnp
+from pitchpoint.core.programs import fast_program
 from pitchpoint.lubrication.ehl.patch.balance import ALONG, Stencil, flow_balance, stencil
 from pitchpoint.lubrication.ehl.patch.layout import PatchProblem
-from pitchpoint.programs import fast_program
 
 __all__ = [
     "CAREFUL",

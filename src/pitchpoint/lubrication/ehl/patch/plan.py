@@ -11,21 +11,21 @@ from jaxtyping import Array, Float
 from numpy.typing import NDArray
 
 from pitchpoint._jax import array, jax
+from pitchpoint.core.factored import Arrays
 from pitchpoint.errors import InputError
-from pitchpoint.factored import Arrays
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
-from pitchpoint.lubrication.ehl.patch.films import (
-    Turned,
-    check_patch_contact,
-    oriented_contact,
-    turned_contact,
-)
 from pitchpoint.lubrication.ehl.patch.layout import (
     Layout,
     PatchProblem,
     ladder,
     laid_out,
     problem_on,
+)
+from pitchpoint.lubrication.ehl.patch.patch_films import (
+    Turned,
+    check_patch_contact,
+    oriented_contact,
+    turned_contact,
 )
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pitchpoint._jax import array
 from pitchpoint.contact.dry_contact import DryContact
 from pitchpoint.contact.half_space import HalfSpace
+from pitchpoint.core.programs import fast_program
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.heat import ContactHeat, contact_heat, next_turn, warmed_patch
 from pitchpoint.lubrication.ehl.patch.layout import (
@@ -37,7 +38,6 @@ from pitchpoint.lubrication.ehl.patch.newton import (
 )
 from pitchpoint.lubrication.ehl.patch.roughness import check_maps_on
 from pitchpoint.lubrication.ehl.strips import MOST_TURNS, STEADY, cold_past
-from pitchpoint.programs import fast_program
 
 __all__ = [
     "Earlier",

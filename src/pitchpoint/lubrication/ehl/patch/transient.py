@@ -12,11 +12,15 @@ from jaxtyping import Array
 from numpy.typing import ArrayLike, NDArray
 
 from pitchpoint._jax import array, jax
-from pitchpoint.doubts import Doubt
+from pitchpoint.core.doubts import Doubt
+from pitchpoint.core.programs import program
+from pitchpoint.core.status import Code
 from pitchpoint.errors import InputError
 from pitchpoint.lubrication.ehl.patch.contact import PatchContact
 from pitchpoint.lubrication.ehl.patch.fields import ElasticResponse, PatchFilm
-from pitchpoint.lubrication.ehl.patch.films import (
+from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem
+from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, PatchIterate, Progress, newton_on_patch
+from pitchpoint.lubrication.ehl.patch.patch_films import (
     CELLS,
     NODES,
     PatchEnded,
@@ -25,12 +29,8 @@ from pitchpoint.lubrication.ehl.patch.films import (
     film_as_given,
     film_with_doubts,
 )
-from pitchpoint.lubrication.ehl.patch.layout import Layout, PatchProblem
-from pitchpoint.lubrication.ehl.patch.newton import ENOUGH, PatchIterate, Progress, newton_on_patch
 from pitchpoint.lubrication.ehl.patch.plan import Plan, all_lie, check_times
 from pitchpoint.lubrication.ehl.patch.solve import dry_under, solve
-from pitchpoint.programs import program
-from pitchpoint.status import Code
 
 __all__ = ["STEPS", "MarchState", "PatchMoment", "march_patches", "steady_beside"]
 
