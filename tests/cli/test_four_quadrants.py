@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from mapped_pair import MOVING, PAIR, TOLERANCE, locking_drive, moving_drive, variant, whole
-from pitchpoint.views.registry import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
@@ -23,6 +22,7 @@ from pitchpoint.cases.built_drive import Ready
 from pitchpoint.efficiency.loss_table import LossTable
 from pitchpoint.runs.run import Outcome, load_case
 from pitchpoint.views import show
+from pitchpoint.views.section_registry import FOUR_QUADRANTS as FOUR_QUADRANTS_SECTION
 from pitchpoint.views.sections.beside import BESIDE
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
