@@ -12,7 +12,7 @@ from pitchpoint.gears.strain_wave import double_arc_fit
 from pitchpoint.gears.strain_wave.design import build_strain_wave
 from pitchpoint.gears.strain_wave.double_arc_fit import fit_double_arc, merit_of
 from pitchpoint.gears.strain_wave.drive import StrainWave
-from pitchpoint.gears.strain_wave.strain_wave_registry import DOUBLE_ARCS, DoubleArcForm
+from pitchpoint.gears.strain_wave.strain_wave_registry import ARCS, DOUBLE_ARCS, DoubleArcForm
 
 TEETH = (100, 102)
 START = DOUBLE_ARCS["liu"]
@@ -62,7 +62,7 @@ def test_the_tooth_found_obeys_every_condition(found):
     assert tangent < tip
     assert tangent < root
     assert 2.0 * (form.convex_radius * cos(tip) - form.convex_offset) > 0.3
-    for name in double_arc_fit.SEARCHED:
+    for name in ARCS:
         assert abs(getattr(form, name) / getattr(START, name) - 1.0) <= 0.1 + 1e-12
     assert 0.9 <= found.deflection <= 1.1
     assert (form.addendum, form.dedendum) == (START.addendum, START.dedendum)
