@@ -13,12 +13,14 @@ import numpy as np
 import pytest
 from documentation import block
 from pages import unpacked
+from pitchpoint.sizing.table import Task
 
 from pitchpoint import cli
 from pitchpoint._jax import double_precision
 from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case, run_case
-from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
+from pitchpoint.sizing.combining import drives_of, exactly_loaded
+from pitchpoint.sizing.sizing import OF_EACH, SizedDrive, Sizing, size
 from pitchpoint.views.sizing_report import render_sizing
 from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 
@@ -68,6 +70,21 @@ def test_none_of_the_front_is_beaten(sizing: Sizing) -> None:
     for name in costs:
         beaten = any((c <= costs[name]).all() and (c < costs[name]).any() for c in costs.values())
         assert beaten == (name not in sizing.front)
+
+
+def test_profile_shifts_that_are_tried_are_worth_a_tenth_of_mass_and_loss(sizing: Sizing) -> None:
+    """Against drives whose shifts are the rule that the search begins with."""
+    task = Task.read(**TASK)
+    with double_precision():
+        ruled = exactly_loaded(task, drives_of(task, "two stages").few(OF_EACH))
+    designs = [one for one in sizing.designs.values() if one.family == "two stages"]
+    costs = np.array([[one.mass, one.loss] for one in designs])
+    gains = []
+    for start in ruled.costs[:, :2]:
+        better = (costs <= start * (1.0 + 1e-9))[:, ::-1]
+        gains.append([costs[better[:, k], k].min(initial=np.inf) / start[k] for k in range(2)])
+    assert np.max(gains) <= 1.0
+    assert (np.mean(gains, axis=0) < 0.9).all()
 
 
 @pytest.mark.parametrize("family", ["two stages", "three stages", "two planetary sets", "3K"])

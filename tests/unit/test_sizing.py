@@ -14,7 +14,7 @@ from pitchpoint import cli
 from pitchpoint.cases.json_schema import table_schema
 from pitchpoint.errors import InputError
 from pitchpoint.results import store
-from pitchpoint.sizing.arrangements import arrangements, reach_words
+from pitchpoint.sizing.arrangements import arrangements, reach_words, shifted_pairs
 from pitchpoint.sizing.front import CHUNK, non_dominated, representatives
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
@@ -333,3 +333,23 @@ def test_sets_have_as_many_planets_as_are_asked_for():
     told = "no teeth that can be made come within 3 % of that ratio with 7 planets"
     crowded = Task.read(**TASK | {"ratio": 9.3}, families="planetary", planets=7)
     assert reach_words(crowded, "planetary") == told
+
+
+def test_profile_shifts_that_are_tried_keep_the_limits_of_teeth():
+    """Few teeth and no helix, by the formulas of a rack and of the involute."""
+    task, (first, second) = Task.read(**TASK), (13, 50)
+    shifts = [form.gears["profile_shift"] for form in shifted_pairs(task, first, second, 0.0)]
+    sums = np.array(shifts).sum(axis=1)
+    assert len(shifts) >= 4 and np.ptp(sums) > 0.7
+    for form, x in zip(shifted_pairs(task, first, second, 0.0), shifts, strict=True):
+        assert 1.0 - x[0] <= 0.5 * first * np.sin(np.radians(20.0)) ** 2 + 1e-9  # no undercut
+        pair = form.built.meshes[0].design.mesh
+        start, end = (float(position) for position in pair.limits)
+        length = float(pair.tangent_length)
+        at_roots = np.array(
+            [(length - start) / start, end / (length - end) * (second / first) ** 2]
+        )
+        sliding = at_roots * first / second - 1.0
+        assert sliding.max() <= 3.0 and float(pair.transverse_contact_ratio) >= 1.2
+        assert min(float(gear.tip_thickness / pair.module) for gear in pair.gears) >= 0.2
+    assert [0.36, -0.36] not in shifts  # the pinion would slide by more than four

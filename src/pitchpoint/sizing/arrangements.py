@@ -7,6 +7,8 @@ from itertools import product
 from math import cos, radians
 from typing import Any
 
+import numpy as np
+
 from pitchpoint.errors import InputError
 from pitchpoint.gears.planetary import PLANETARY
 from pitchpoint.sizing.for_ratio import (
@@ -19,7 +21,7 @@ from pitchpoint.sizing.stage_forms import CENTRE_FIELD, FIELD, Form, formed
 from pitchpoint.sizing.task_table import Task
 from pitchpoint.sizing.three_k import three_k_sets, three_k_tables
 
-__all__ = ["SET_RATIOS", "Arrangement", "arrangements", "reach_words"]
+__all__ = ["SET_RATIOS", "Arrangement", "arrangements", "reach_words", "shifted_pairs"]
 
 Tree = dict[str, Any]
 
@@ -28,6 +30,12 @@ HELICES = (0.0, 15.0, 30.0)
 SHIFT_SUMS = (0.0, 0.6)
 PINION_SHIFT = 0.5
 """Profile shift of pinions at large ratios; (1 - 1/u) of it at a ratio u, more where undercut asks for it."""
+
+TRIED_SHIFTS, TRIED_SUMS = (0.0, 0.15, 0.3, 0.45), (0.0, 0.4, 0.8, 1.2)
+"""Profile shifts of pinions, and sums of both shifts, that are tried on pairs of the best designs."""
+
+LEAST_TIP, LEAST_CONTACT_RATIO, MOST_SLIDING = 0.2, 1.2, 3.0
+"""Limits of tips [modules], transverse contact ratio and specific sliding that these shifts keep."""
 
 PAIR_RATIOS = 1.25, 8.0
 SET_RATIOS = 2.8, 11.0
@@ -128,12 +136,43 @@ def _runnable(task: Task, kind: str, tables: Iterable[Tree]) -> tuple[Form, ...]
 
 def _pair(pinion: int, wheel: int, helix: float, shifts: float) -> Tree:
     """Table of a pair: shifts that leave no undercut, more on the pinion at large ratios."""
-    virtual = cos(radians(helix)) ** 3
-    least = [without_undercut(teeth / virtual) for teeth in (pinion, wheel)]
-    first = max(least[0], round(PINION_SHIFT * (1.0 - pinion / wheel), 2))
-    second = max(least[1] if wheel < LEAST_WHEEL else -1.0, round(shifts - first, 2))
     skew = {"helix_angle": f"{helix:g} deg"} if helix else {}
-    return {"teeth": [pinion, wheel], "profile_shift": [first, second], **skew, **INSPECTION}
+    gears = {"teeth": [pinion, wheel], **skew, **INSPECTION}
+    return _shifted(gears, helix, round(PINION_SHIFT * (1.0 - pinion / wheel), 2), shifts)
+
+
+def _shifted(gears: Tree, helix: float, first: float, shifts: float) -> Tree:
+    """Table of a pair with a shift of the pinion and a sum of both, or more where there would be undercut."""
+    virtual = cos(radians(helix)) ** 3
+    least = [without_undercut(teeth / virtual) for teeth in gears["teeth"]]
+    first = max(least[0], first)
+    second = max(least[1] if gears["teeth"][1] < LEAST_WHEEL else -1.0, round(shifts - first, 2))
+    return gears | {"profile_shift": [first, second]}
+
+
+@lru_cache(maxsize=1024)
+def shifted_pairs(task: Task, pinion: int, wheel: int, helix: float) -> tuple[Form, ...]:
+    """Pairs of the same teeth with other profile shifts, as far as tips and contact ratio allow them.
+
+    Args:
+        task: what is asked.
+        pinion, wheel: numbers of teeth.
+        helix: angle [deg].
+    """
+    gears = _pair(pinion, wheel, helix, 0.0)
+    tables = [_shifted(gears, helix, *shifts) for shifts in product(TRIED_SHIFTS, TRIED_SUMS)]
+    apart = {tuple(table["profile_shift"]): table for table in tables}
+    return tuple(form for form in _runnable(task, "pair", apart.values()) if _is_sound(form))
+
+
+def _is_sound(form: Form) -> bool:
+    """True for a pair with thick tips, none of them shortened, a long path of contact and little sliding."""
+    pair: Any = form.built.meshes[0].design.mesh  # a pair of cylindrical gears
+    tips = min(float(gear.tip_thickness / pair.module) for gear in pair.gears)
+    thick = tips >= LEAST_TIP and not any(pair.shortened)
+    sliding = float(np.abs(np.diagonal(pair.specific_sliding(pair.limits))).max())
+    long = float(pair.transverse_contact_ratio) >= LEAST_CONTACT_RATIO
+    return thick and long and sliding <= MOST_SLIDING
 
 
 LEAST_WHEEL = 30

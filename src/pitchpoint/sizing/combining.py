@@ -7,13 +7,13 @@ from math import prod
 import numpy as np
 from jaxtyping import Float, Int
 
-from pitchpoint.sizing.arrangements import Arrangement, arrangements, reach_words
+from pitchpoint.sizing.arrangements import Arrangement, arrangements, reach_words, shifted_pairs
 from pitchpoint.sizing.for_ratio import MODULES
 from pitchpoint.sizing.front import non_dominated, representatives
 from pitchpoint.sizing.stage_forms import Form, Forms, Sized
 from pitchpoint.sizing.task_table import Task
 
-__all__ = ["Drives", "NoDriveError", "drives_of", "exactly_loaded"]
+__all__ = ["Drives", "NoDriveError", "drives_of", "exactly_loaded", "with_tried_shifts"]
 
 KEPT = {1: 400, 2: 14, 3: 8}
 """Sizes of a stage that are kept for each of its loads, by how many stages there are."""
@@ -72,6 +72,22 @@ class Drives:
         """At most so many of those that no other one beats: the best by each cost, others evenly by mass."""
         front = self[non_dominated(self.costs)]
         return front[representatives(front.costs, count)]
+
+    @property
+    def of_pairs(self) -> bool:
+        """True for stages that are all spur or helical pairs."""
+        return all(form.kind == "pair" for form in self.forms.forms)
+
+    def in_place_of(self, coarse: "Drives") -> "Drives":
+        """For each of the coarse drives the one that betters all its costs by the most, and the best by each.
+
+        Args:
+            coarse: drives that these were varied from.
+        """
+        front = self[non_dominated(self.costs)]
+        parts = np.max(front.costs[None] / coarse.costs[:, None], axis=2)
+        chosen = np.union1d(parts.argmin(axis=1), front.costs.argmin(axis=0))
+        return front[chosen[np.argsort(front.mass[chosen], kind="stable")]]
 
 
 class NoDriveError(Exception):
@@ -139,6 +155,62 @@ def exactly_loaded(task: Task, drives: Drives) -> Drives:
         each.append(sizes)
         bears &= enough
     return Drives(forms=drives.forms, tried=drives.tried, **_totals(drives.forms, each))[bears]
+
+
+def with_tried_shifts(task: Task, drives: Drives) -> Drives:
+    """Drives of the same teeth and modules with each profile shift that is tried, and the least widths.
+
+    Args:
+        task: what is asked.
+        drives: of pairs, which bear the load.
+    """
+    listed = drives.forms.forms
+    kept = [listed[k] for k in np.unique(drives.form).tolist()]
+    teeth = dict.fromkeys(_teeth(form) for form in kept)
+    forms = Forms(task, [*kept, *(form for each in teeth for form in shifted_pairs(task, *each))])
+    of_teeth: dict[Teeth, list[int]] = {each: [] for each in teeth}
+    for number, form in enumerate(forms.forms):
+        of_teeth[_teeth(form)].append(number)
+    # Drives that differ in nothing but their shifts are one here, stages under the same load too.
+    apart = dict.fromkeys(
+        tuple(zip((_teeth(listed[k]) for k in row), modules, strict=True))
+        for row, modules in zip(drives.form.tolist(), drives.module.tolist(), strict=True)
+    )
+    stages = {one: _exact_stages(task, one) for one in apart}
+    rows = {stage: len(of_teeth[stage[1]]) for of_one in stages.values() for stage in of_one}
+    numbers = np.concatenate([of_teeth[stage[1]] for stage in rows])
+    module, torque, speed = np.repeat([stage[2:] for stage in rows], [*rows.values()], axis=0).T
+    sizes, bears = forms.sized(numbers, module, torque, speed)
+    options, end = {}, 0
+    for stage, count in rows.items():
+        of_stage = np.arange(end, end + count)
+        most = task.most_distance(stage[0], drives.form.shape[1])
+        some = sizes[of_stage[bears[of_stage] & (sizes.distance[of_stage] <= most)]]
+        options[stage] = some[non_dominated(np.stack([some.mass, some.loss, some.diameter], 1))]
+        end += count
+    parts = [_combined(forms, [options[stage] for stage in of_one]) for of_one in stages.values()]
+    arrays = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return Drives(forms=forms, tried=drives.tried + len(numbers), **arrays)
+
+
+Teeth = tuple[int, int, float]
+"""Of pinion and wheel, and helix angle [deg]."""
+
+
+def _teeth(form: Form) -> Teeth:
+    pinion, wheel = form.gears["teeth"]
+    return pinion, wheel, float(form.gears.get("helix_angle", "0").split()[0])
+
+
+def _exact_stages(
+    task: Task, pairs: Sequence[tuple[Teeth, float]]
+) -> list[tuple[int, Teeth, float, float, float]]:
+    """Number, teeth, module, torque at the output and speed of the input of stages, from the input."""
+    ratios = [teeth[1] / teeth[0] for teeth, _ in pairs]
+    return [
+        (k, *pairs[k], task.torque / prod(ratios[k + 1 :]), task.speed * prod(ratios[k:]))
+        for k in range(len(pairs))
+    ]
 
 
 def _loads(task: Task, arrangement: Arrangement) -> list[Load]:

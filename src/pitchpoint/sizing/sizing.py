@@ -25,7 +25,13 @@ from pitchpoint.registry import enumerated
 from pitchpoint.results.store import make_folder, write_text
 from pitchpoint.runs.run import load_case
 from pitchpoint.sizing.arrangements import SET_RATIOS
-from pitchpoint.sizing.combining import Drives, NoDriveError, drives_of, exactly_loaded
+from pitchpoint.sizing.combining import (
+    Drives,
+    NoDriveError,
+    drives_of,
+    exactly_loaded,
+    with_tried_shifts,
+)
 from pitchpoint.sizing.front import non_dominated, representatives
 from pitchpoint.sizing.stage_forms import case_of, gears_as_discs
 from pitchpoint.sizing.strain_wave import (
@@ -43,7 +49,7 @@ __all__ = ["SizedDrive", "Sizing", "families_by_reason", "size", "sized_for"]
 Tree = dict[str, Any]
 
 OF_EACH = 24
-"""Designs of a family that are worked out."""
+"""Designs of a family that are worked out; of pairs up to three more, see `Drives.in_place_of`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,8 +238,8 @@ def size(
     and K_Hbeta as given, K_Halpha = 1 and K_v by method C, planets with their mesh load factor; losses are
     those of teeth by ISO/TR 14179-2. Shafts, bearings, seals, oil that is churned, housings and carriers
     are in nothing. Strain wave gears have the proportions and the rating of a catalogue, and no rated
-    teeth. Profile shifts are a rule and widths go in steps: `optimise` on the case of a design goes between
-    them, and took 5 and 10 % off the mass of two designs of two stages at no more loss.
+    teeth. Profile shifts of pairs and widths go in steps: `optimise` on the case of a design goes between
+    them.
 
     Example:
         >>> from pitchpoint.sizing.sizing import size
@@ -313,6 +319,8 @@ def _of_stages(task: Task, family: str) -> tuple[list[SizedDrive], int]:
     drives = drives_of(task, family)
     few = exactly_loaded(task, _within(task, drives).few(OF_EACH))
     few = _within(task, few) if len(few) else few
+    if len(few) and few.of_pairs:
+        few = _within(task, with_tried_shifts(task, few)).in_place_of(few)
     cases = {number: _opened(task, few, number) for number in range(len(few))}
     open_ones = {number: case for number, case in cases.items() if case is not None}
     if not open_ones:
@@ -321,7 +329,7 @@ def _of_stages(task: Task, family: str) -> tuple[list[SizedDrive], int]:
         _designed(family, _name(family, place), few, number, *case)
         for place, (number, case) in enumerate(open_ones.items())
     ]
-    return made, drives.tried
+    return made, few.tried
 
 
 FILES = {
