@@ -597,10 +597,11 @@ def optimise(
     overwrite: Overwrite = False,
     json_: AsJson = False,
 ) -> None:
-    """Vary numbers of a case until one result is least or largest, and others are within limits.
+    r"""Vary numbers of a case until one result is least or largest, and others are within limits.
 
-    What varies, the aim and the limits stand in options, or in the table [optimise] of the case. The best
-    design is written as a case file, and every design that was computed as a line of a table.
+    What varies, the aim and the limits stand in options, or in the table
+    \[optimise] of the case. The best design is written as a case file, and
+    every design that was computed as a line of a table.
     """
     from pitchpoint.cases.record import default_folder
     from pitchpoint.results.chosen_units import shown_in
