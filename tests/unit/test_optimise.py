@@ -15,6 +15,7 @@ from pitchpoint.runs import optimise as optimising
 from pitchpoint.runs.check import check_case
 from pitchpoint.runs.optimum_search import ConstrainedSearch
 from pitchpoint.runs.optimum_task import OptimiserTask, optimiser_task
+from pitchpoint.runs.run import Progress
 
 SHIFT, MATE, WIDTH = "gears.profile_shift.1", "gears.profile_shift.2", "gears.face_width"
 FACTORS = {"dynamic_factor": 1.0, "face_load_factor": 1.0, "transverse_load_factor": 1.0}
@@ -319,3 +320,35 @@ def test_the_best_so_far_is_written_where_it_is_ended_by_hand(
     monkeypatch.setattr(OptimiserTask, "values", lambda *_: stop(*_))
     given[-1] = str(tmp_path / "nothing")
     assert run_command(monkeypatch, *given) == 130
+
+
+@pytest.mark.parametrize("ends", ["by hand", "without a design"])
+def test_earlier_results_stand_until_a_search_has_a_design(tmp_path: Any, ends: str) -> None:
+    earlier = {"case.toml": "of before", "designs.csv": "of before too"}
+    for name, text in earlier.items():
+        (tmp_path / name).write_text(text)
+
+    class Stopped(Progress):
+        def part(self, *_: Any) -> None:
+            if ends == "by hand":
+                raise KeyboardInterrupt
+
+    vary = {WIDTH: {"values": ["20 mm", "21 mm"]}}
+    named = {"minimise": "mean_loss", "folder": tmp_path, "overwrite": True, "progress": Stopped()}
+    with pytest.raises((KeyboardInterrupt, InputError)):
+        pp.optimise(PAIR, vary, subject_to="flank_safety >= 9", **named)
+    assert {name: (tmp_path / name).read_text() for name in earlier} == earlier
+    if ends != "by hand":
+        assert len((tmp_path / "designs.new.csv").read_text().splitlines()) == 3
+        pp.optimise(PAIR, vary, **named)
+        assert {path.name for path in tmp_path.iterdir()} == {*earlier}
+        assert len((tmp_path / "designs.csv").read_text().splitlines()) == 3
+        assert pp.Case(tmp_path / "case.toml")["title"] == "Twins"
+
+
+def test_a_design_does_not_take_the_place_of_its_case(tmp_path: Any) -> None:
+    path = tmp_path / "case.toml"
+    text = PAIR.to_toml(path)
+    with pytest.raises(InputError, match="is the case that is varied; name another folder"):
+        pp.optimise(path, {SHIFT: [0.1]}, minimise="mean_loss", folder=tmp_path, overwrite=True)
+    assert path.read_text() == text

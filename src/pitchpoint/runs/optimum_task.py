@@ -33,7 +33,14 @@ from pitchpoint.runs.optimum_search import STEP, ConstrainedSearch
 from pitchpoint.runs.run import FrictionChoice, Outcome, run_case
 from pitchpoint.runs.sought_figures import SoughtFigure, value_in, values_of_study
 
-__all__ = ["DESIGNS_FILE", "OptimiserTask", "ResultLimit", "VariedKey", "optimiser_task"]
+__all__ = [
+    "DESIGNS_FILE",
+    "NEW_DESIGNS",
+    "OptimiserTask",
+    "ResultLimit",
+    "VariedKey",
+    "optimiser_task",
+]
 
 MOST_COMBINATIONS = 200
 """Products of lists of values that are tried one by one."""
@@ -54,6 +61,9 @@ DIFFERENTIABLE = {
 
 DESIGNS_FILE = "designs.csv"
 """File in the folder with every design that was computed."""
+
+NEW_DESIGNS = "designs.new.csv"
+"""The same as long as results of an earlier search stand beside it."""
 
 _LIMIT = re.compile(r"\s*([\w.]{1,200}?)\s*(>=|<=|==|=|≥|≤|>|<)\s*([^<>=]{1,100}?)\s*")
 _WAYS = {">": ">=", "≥": ">=", "<": "<=", "≤": "<=", "==": "="}
