@@ -3,19 +3,24 @@
 import csv
 import json
 import sys
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import bank
 import numpy as np
 import pytest
 
 import pitchpoint as pp
 from pitchpoint import cli
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.runs import optimise as optimising
 from pitchpoint.runs.check import check_case
 from pitchpoint.runs.optimum_search import ConstrainedSearch
 from pitchpoint.runs.optimum_task import OptimiserTask, optimiser_task
 from pitchpoint.runs.run import Progress
+from pitchpoint.runs.sought_figures import SoughtFigure, value_in
 
 SHIFT, MATE, WIDTH = "gears.profile_shift.1", "gears.profile_shift.2", "gears.face_width"
 FACTORS = {"dynamic_factor": 1.0, "face_load_factor": 1.0, "transverse_load_factor": 1.0}
@@ -352,3 +357,24 @@ def test_a_design_does_not_take_the_place_of_its_case(tmp_path: Any) -> None:
     with pytest.raises(InputError, match="is the case that is varied; name another folder"):
         pp.optimise(path, {SHIFT: [0.1]}, minimise="mean_loss", folder=tmp_path, overwrite=True)
     assert path.read_text() == text
+
+
+@pytest.mark.whole
+def test_every_figure_of_a_study_is_a_number_in_a_run_of_the_parts_that_are_asked_for() -> None:
+    path = Path(__file__).parents[2] / "examples" / "two_stage.toml"
+    (outcome,) = bank.outcomes(path).values()
+    (base,) = pp.Case(path).held
+    with pp.double_precision():
+        study, built = CaseDesigns(base.computed, [{}]).compute(), base.built({})
+    law = str(study["law"].values[0])
+    plain = [str(name) for name in study if study[name].dims == ("law", "point")]
+    figures = [
+        SoughtFigure.named(name, study, built) for name in plain if study[name].dtype.kind == "f"
+    ]
+    assert {"output_backlash", "mean_loss", "largest_root_stress"} <= {one.name for one in figures}
+    for figure in figures:
+        asked = {"operation", "strength", figure.part_of_run} & {*outcome.parts}
+        ran = replace(outcome, parts={name: outcome.parts[name] for name in asked})
+        of_study = float(study[figure.name].sel(law=law).squeeze())
+        expected = pytest.approx(of_study, rel=1e-9, abs=1e-12, nan_ok=True)
+        assert value_in(ran, figure, law) == expected, figure.name

@@ -452,7 +452,7 @@ def _ran(
         spread: of the aim over all designs.
     """
     parts = ["operation", *(["strength"] if STRENGTH.why_not(task.built) is None else [])]
-    parts += [one.part for one in task.figures if one.part]
+    parts += [one.part_of_run for one in task.figures if one.part_of_run]
     with TemporaryDirectory() as place:
         write_case_copy(task.base.computed.document(**changes), Path(place))
         file = str(Path(place) / CASE)
