@@ -21,6 +21,7 @@ from pitchpoint.runs.optimum_search import ConstrainedSearch
 from pitchpoint.runs.optimum_task import OptimiserTask, optimiser_task
 from pitchpoint.runs.run import Progress
 from pitchpoint.runs.sought_figures import SoughtFigure, value_in
+from pitchpoint.views.optimum_screen import optimum_screen
 
 SHIFT, MATE, WIDTH = "gears.profile_shift.1", "gears.profile_shift.2", "gears.face_width"
 FACTORS = {"dynamic_factor": 1.0, "face_load_factor": 1.0, "transverse_load_factor": 1.0}
@@ -219,6 +220,7 @@ def test_a_task_without_a_solution_says_which_limit_and_by_how_much() -> None:
         ({"gears.teeth.1": [*range(17, 57)], "gears.teeth.2": [*range(17, 57)]}, {}, "1600 combinations"),
         ({SHIFT: "0:0.5"}, {"minimise": "mean_los"}, '"mean_los" is no result; did you mean mean_loss'),
         ({SHIFT: "0:0.5"}, {"minimise": "weight of it"}, "is no result; results are those of a study"),
+        ({SHIFT: "0:0.5"}, {"minimise": "residual"}, '"residual" is no result; '),
         ({SHIFT: "0:0.5"}, {"minimise": "disc_mass"}, "has 2 values at each design; name one: disc_mass.1"),
         ({SHIFT: "0:0.5"}, {"minimise": "disc_mass.3"}, 'disc_mass has no value "3"; it has 1, 2'),
         ({SHIFT: "0:0.5"}, {"minimise": "inspection.mean_loss"}, 'inspection has no result "mean_loss"'),
@@ -251,7 +253,35 @@ def test_a_key_of_gears_that_stand_for_several_meshes_has_its_value_as_given() -
 def test_an_aim_without_a_figure_says_so() -> None:
     plain = PAIR.set({"materials.gear_1": "steel", "materials.gear_2": "steel"})
     with pytest.raises(InputError, match="flank_safety is not a number in any of 1 designs"):
-        pp.optimise(plain, {SHIFT: [0.1]}, minimise="flank_safety")
+        pp.optimise(plain, {"materials.gear_1": ["steel"]}, minimise="flank_safety")
+
+
+def test_a_safety_that_no_design_can_have_is_refused_before_the_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plain = PAIR.set({"materials.gear_1": "steel", "materials.gear_2": "steel"})
+    monkeypatch.setattr(OptimiserTask, "values", lambda *_: pytest.fail("a design was computed"))
+    aims = {"maximise": "root_safety"}, {"minimise": "mean_loss", "subject_to": "flank_safety >= 1"}
+    for aim in aims:
+        with pytest.raises(InputError, match=r"safety is not known: no safety of gear 1 against "):
+            pp.optimise(plain, {SHIFT: [0.1]}, **aim)
+    with pytest.raises(InputError, match=r"itself: no safety of gear 1 against pitting"):
+        pp.gradients(plain, of="least_flank_safety", by=SHIFT)
+
+
+def test_a_folder_without_a_case_file_is_shown_without_it(tmp_path: Any) -> None:
+    folder = tmp_path / "my results"
+    named = {"minimise": "mean_loss", "folder": folder, "overwrite": True}
+    lines = [line.text for line in optimum_screen(pp.optimise(PAIR, {SHIFT: [0.1]}, **named), 300)]
+    assert f"Case: pitchpoint run '{folder / 'case.toml'}'" in lines
+
+    def law(sliding: Any) -> Any:
+        return 5e-4 + 0.0 * sliding
+
+    found = pp.optimise(PAIR, {SHIFT: [0.1]}, friction=law, **named)
+    lines = [line.text for line in optimum_screen(found, 300)]
+    assert not any(line.startswith("Case:") for line in lines)
+    assert [path.name for path in folder.iterdir()] == ["designs.csv"]
 
 
 def test_nothing_is_returned_that_a_run_does_not_say(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -152,7 +152,8 @@ def optimise(
         variant: of the case, the first one by default.
         friction: laws of one's own, see `run_case`.
         folder: where the best design goes as a case file, and every design that is computed as a line of a
-            table, as soon as it is; nothing is written by default.
+            table, as soon as it is; nothing is written by default. Under a law of one's own there is no case
+            file, which could not hold it.
         overwrite: True to replace both files, when the design is there; until then designs of the search are
             in `designs.new.csv` beside them.
         progress: told about designs.

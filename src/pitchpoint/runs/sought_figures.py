@@ -18,7 +18,10 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["SoughtFigure", "value_in", "values_of_study"]
+__all__ = ["NO_FIGURES", "SoughtFigure", "value_in", "values_of_study"]
+
+NO_FIGURES = ("residual", "iterations", "locked", "turns", "turns_change", "meeting_error")
+"""What a study has beside results: how its solves ended."""
 
 _EXTREMES = ("least_", "largest_")
 """What names of a study begin with that a run has of each gear."""
@@ -73,9 +76,12 @@ class SoughtFigure:
         variable, place = words[0], ".".join(words[1:])
         if not part:
             for at_once in (variable, *(f"{which}{variable}" for which in _EXTREMES if not place)):
-                if at_once in study and study[at_once].dtype.kind == "f":
+                is_figure = at_once in study and at_once not in NO_FIGURES
+                if is_figure and study[at_once].dtype.kind == "f":
                     return cls(name, at_once, "", place, variable_of(study, at_once))
-        part, variable = _part_with(part, variable, built, [str(key) for key in study])
+        part, variable = _part_with(
+            part, variable, built, [str(key) for key in study if key not in NO_FIGURES]
+        )
         return cls(name, variable, part, place, VARIABLES[variable])
 
     @property
