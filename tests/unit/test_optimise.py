@@ -232,6 +232,11 @@ def test_a_task_without_a_solution_says_which_limit_and_by_how_much() -> None:
         ({SHIFT: "0:0.5"}, {"subject_to": "safety >= 2"}, "subject_to safety >= 2: "),
         ({SHIFT: "0:0.5"}, {"law": "magic"}, 'law: "magic" is no friction law of the case'),
         ({SHIFT: "0:0.5"}, {"starts": 0}, "starts: 0 is out of range"),
+        ({SHIFT: "0:0.5"}, {"starts": "4"}, 'starts: "4" was given where a whole number'),
+        ({SHIFT: "0:0.5"}, {"subject_to": 5}, "subject_to: 5 was given where a limit"),
+        ({SHIFT: "0:0.5"}, {"law": 3}, "law: 3 was given where the name of a friction law"),
+        ({SHIFT: "0:0.5"}, {"minimise": 3}, "minimise: 3 was given where the name of a result"),
+        (SHIFT, {}, f'vary: "{SHIFT}" was given where a dictionary'),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_in_a_sentence(vary: Any, given: Any, words: str) -> None:

@@ -179,16 +179,17 @@ def optimise(
             ...
         pitchpoint.errors.InputError: tian2024: gears.profile_shift: from 0.6 to 0 is no range; write "0:0.6"
     """
-    demand_arguments(variant=variant, friction=friction, folder=folder, overwrite=overwrite)
-    held = as_case(case)
-    chosen = Case(held, variant=held.variants[0] if variant is None else variant)
-    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     given: dict[str, Any] = {
         "vary": vary,
         "minimise": minimise,
         "maximise": maximise,
         "subject_to": subject_to,
     }
+    demand_arguments(**given, law=law, starts=starts, variant=variant)
+    demand_arguments(friction=friction, folder=folder, overwrite=overwrite)
+    held = as_case(case)
+    chosen = Case(held, variant=held.variants[0] if variant is None else variant)
+    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     stated = {name: value for name, value in given.items() if value is not None}
     table = table_of_optimiser(chosen)
     if vary is None and table is None:
