@@ -3,18 +3,25 @@
 import csv
 import json
 import sys
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import bank
 import numpy as np
 import pytest
 
 import pitchpoint as pp
 from pitchpoint import cli
+from pitchpoint.analyses.design_batch import CaseDesigns
 from pitchpoint.errors import ConvergenceError, InputError
 from pitchpoint.runs import optimise as optimising
 from pitchpoint.runs.check import check_case
 from pitchpoint.runs.optimum_search import ConstrainedSearch
 from pitchpoint.runs.optimum_task import OptimiserTask, optimiser_task
+from pitchpoint.runs.run import Progress
+from pitchpoint.runs.sought_figures import NO_FIGURES, SoughtFigure, value_in
+from pitchpoint.views.optimum_screen import optimum_screen
 
 SHIFT, MATE, WIDTH = "gears.profile_shift.1", "gears.profile_shift.2", "gears.face_width"
 FACTORS = {"dynamic_factor": 1.0, "face_load_factor": 1.0, "transverse_load_factor": 1.0}
@@ -213,6 +220,7 @@ def test_a_task_without_a_solution_says_which_limit_and_by_how_much() -> None:
         ({"gears.teeth.1": [*range(17, 57)], "gears.teeth.2": [*range(17, 57)]}, {}, "1600 combinations"),
         ({SHIFT: "0:0.5"}, {"minimise": "mean_los"}, '"mean_los" is no result; did you mean mean_loss'),
         ({SHIFT: "0:0.5"}, {"minimise": "weight of it"}, "is no result; results are those of a study"),
+        ({SHIFT: "0:0.5"}, {"minimise": "residual"}, '"residual" is no result; '),
         ({SHIFT: "0:0.5"}, {"minimise": "disc_mass"}, "has 2 values at each design; name one: disc_mass.1"),
         ({SHIFT: "0:0.5"}, {"minimise": "disc_mass.3"}, 'disc_mass has no value "3"; it has 1, 2'),
         ({SHIFT: "0:0.5"}, {"minimise": "inspection.mean_loss"}, 'inspection has no result "mean_loss"'),
@@ -224,6 +232,11 @@ def test_a_task_without_a_solution_says_which_limit_and_by_how_much() -> None:
         ({SHIFT: "0:0.5"}, {"subject_to": "safety >= 2"}, "subject_to safety >= 2: "),
         ({SHIFT: "0:0.5"}, {"law": "magic"}, 'law: "magic" is no friction law of the case'),
         ({SHIFT: "0:0.5"}, {"starts": 0}, "starts: 0 is out of range"),
+        ({SHIFT: "0:0.5"}, {"starts": "4"}, 'starts: "4" was given where a whole number'),
+        ({SHIFT: "0:0.5"}, {"subject_to": 5}, "subject_to: 5 was given where a limit"),
+        ({SHIFT: "0:0.5"}, {"law": 3}, "law: 3 was given where the name of a friction law"),
+        ({SHIFT: "0:0.5"}, {"minimise": 3}, "minimise: 3 was given where the name of a result"),
+        (SHIFT, {}, f'vary: "{SHIFT}" was given where a dictionary'),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told_in_a_sentence(vary: Any, given: Any, words: str) -> None:
@@ -245,7 +258,35 @@ def test_a_key_of_gears_that_stand_for_several_meshes_has_its_value_as_given() -
 def test_an_aim_without_a_figure_says_so() -> None:
     plain = PAIR.set({"materials.gear_1": "steel", "materials.gear_2": "steel"})
     with pytest.raises(InputError, match="flank_safety is not a number in any of 1 designs"):
-        pp.optimise(plain, {SHIFT: [0.1]}, minimise="flank_safety")
+        pp.optimise(plain, {"materials.gear_1": ["steel"]}, minimise="flank_safety")
+
+
+def test_a_safety_that_no_design_can_have_is_refused_before_the_search(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plain = PAIR.set({"materials.gear_1": "steel", "materials.gear_2": "steel"})
+    monkeypatch.setattr(OptimiserTask, "values", lambda *_: pytest.fail("a design was computed"))
+    aims = {"maximise": "root_safety"}, {"minimise": "mean_loss", "subject_to": "flank_safety >= 1"}
+    for aim in aims:
+        with pytest.raises(InputError, match=r"safety is not known: no safety of gear 1 against "):
+            pp.optimise(plain, {SHIFT: [0.1]}, **aim)
+    with pytest.raises(InputError, match=r"itself: no safety of gear 1 against pitting"):
+        pp.gradients(plain, of="least_flank_safety", by=SHIFT)
+
+
+def test_a_folder_without_a_case_file_is_shown_without_it(tmp_path: Any) -> None:
+    folder = tmp_path / "my results"
+    named = {"minimise": "mean_loss", "folder": folder, "overwrite": True}
+    lines = [line.text for line in optimum_screen(pp.optimise(PAIR, {SHIFT: [0.1]}, **named), 300)]
+    assert f"Case: pitchpoint run '{folder / 'case.toml'}'" in lines
+
+    def law(sliding: Any) -> Any:
+        return 5e-4 + 0.0 * sliding
+
+    found = pp.optimise(PAIR, {SHIFT: [0.1]}, friction=law, **named)
+    lines = [line.text for line in optimum_screen(found, 300)]
+    assert not any(line.startswith("Case:") for line in lines)
+    assert [path.name for path in folder.iterdir()] == ["designs.csv"]
 
 
 def test_nothing_is_returned_that_a_run_does_not_say(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -319,3 +360,60 @@ def test_the_best_so_far_is_written_where_it_is_ended_by_hand(
     monkeypatch.setattr(OptimiserTask, "values", lambda *_: stop(*_))
     given[-1] = str(tmp_path / "nothing")
     assert run_command(monkeypatch, *given) == 130
+
+
+@pytest.mark.parametrize("ends", ["by hand", "without a design"])
+def test_earlier_results_stand_until_a_search_has_a_design(tmp_path: Any, ends: str) -> None:
+    earlier = {"case.toml": "of before", "designs.csv": "of before too"}
+    for name, text in earlier.items():
+        (tmp_path / name).write_text(text)
+
+    class Stopped(Progress):
+        def part(self, *_: Any) -> None:
+            if ends == "by hand":
+                raise KeyboardInterrupt
+
+    vary = {WIDTH: {"values": ["20 mm", "21 mm"]}}
+    named = {"minimise": "mean_loss", "folder": tmp_path, "overwrite": True, "progress": Stopped()}
+    with pytest.raises((KeyboardInterrupt, InputError)):
+        pp.optimise(PAIR, vary, subject_to="flank_safety >= 9", **named)
+    assert {name: (tmp_path / name).read_text() for name in earlier} == earlier
+    if ends != "by hand":
+        assert len((tmp_path / "designs.new.csv").read_text().splitlines()) == 3
+        pp.optimise(PAIR, vary, **named)
+        assert {path.name for path in tmp_path.iterdir()} == {*earlier}
+        assert len((tmp_path / "designs.csv").read_text().splitlines()) == 3
+        assert pp.Case(tmp_path / "case.toml")["title"] == "Twins"
+
+
+def test_a_design_does_not_take_the_place_of_its_case(tmp_path: Any) -> None:
+    path = tmp_path / "case.toml"
+    text = PAIR.to_toml(path)
+    with pytest.raises(InputError, match="is the case that is varied; name another folder"):
+        pp.optimise(path, {SHIFT: [0.1]}, minimise="mean_loss", folder=tmp_path, overwrite=True)
+    assert path.read_text() == text
+
+
+@pytest.mark.whole
+def test_every_figure_of_a_study_is_a_number_in_a_run_of_the_parts_that_are_asked_for() -> None:
+    path = Path(__file__).parents[2] / "examples" / "two_stage.toml"
+    (outcome,) = bank.outcomes(path).values()
+    (base,) = pp.Case(path).held
+    with pp.double_precision():
+        study, built = CaseDesigns(base.computed, [{}]).compute(), base.built({})
+    law = str(study["law"].values[0])
+    plain = [
+        str(name)
+        for name in study
+        if study[name].dims == ("law", "point") and name not in NO_FIGURES
+    ]
+    figures = [
+        SoughtFigure.named(name, study, built) for name in plain if study[name].dtype.kind == "f"
+    ]
+    assert {"output_backlash", "mean_loss", "largest_root_stress"} <= {one.name for one in figures}
+    for figure in figures:
+        asked = {"operation", "strength", figure.part_of_run} & {*outcome.parts}
+        ran = replace(outcome, parts={name: outcome.parts[name] for name in asked})
+        of_study = float(study[figure.name].sel(law=law).squeeze())
+        expected = pytest.approx(of_study, rel=1e-9, abs=1e-12, nan_ok=True)
+        assert value_in(ran, figure, law) == expected, figure.name

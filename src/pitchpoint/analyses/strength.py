@@ -30,7 +30,7 @@ from pitchpoint.strength.rating import ROWS, ratings
 from pitchpoint.strength.root import THINNEST_RIM, THINNEST_RING
 from pitchpoint.strength.strength_table import MESH_LOAD
 
-__all__ = ["STRENGTH", "mesh_load_of", "rated_rows", "rating_inputs", "ratings_of"]
+__all__ = ["STRENGTH", "mesh_load_of", "rated_rows", "rating_inputs", "ratings_of", "why_no_safety"]
 
 _MAIN = (
     "tangential_force",
@@ -278,6 +278,17 @@ def ratings_of(points: Sequence[Ready], laws: int) -> dict[str, Any]:
         name: (("law", "point"), np.array([[one[name] for one in extremes]] * laws))
         for name in RATING
     }
+
+
+def why_no_safety(built: Ready) -> str:
+    """Why gears have no safeties, as a run tells it of the first of them; empty where all have them.
+
+    Args:
+        built: the case.
+    """
+    sentences = (text for _, mesh in _rated(built) for text in mesh.rated.withheld)
+    why = next(sentences, "").removesuffix(".")
+    return why[:1].lower() + why[1:]
 
 
 def _method(pairs: Sequence[Built]) -> str:

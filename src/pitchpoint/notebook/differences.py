@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from pitchpoint.analyses.design_batch import CaseDesigns
+from pitchpoint.analyses.strength import why_no_safety
 from pitchpoint.cases.document import leaves
 from pitchpoint.cases.keys import quantity_at
 from pitchpoint.cases.variant import Variant
@@ -15,6 +16,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.input.quantities import Quantity, shown
 from pitchpoint.registry import nearest
 from pitchpoint.runs.case import case_value
+from pitchpoint.runs.sought_figures import NO_FIGURES
 
 __all__ = [
     "MADE",
@@ -55,8 +57,6 @@ MADE = ("gears.deviations.", "gears.inspection.")
 OTHER_FORM = "has no derivative here: any change of it makes gears of another form, or none"
 STILL = "does not move it"
 """Why a key has no derivative."""
-
-_NO_FIGURES = ("residual", "iterations", "locked", "turns", "turns_change", "meeting_error")
 
 
 @dataclass(frozen=True)
@@ -174,6 +174,8 @@ def by_differences(
     values = figure.values
     if not np.isfinite(values[0]):
         why = str(data["reason"].sel(law=figure["law"]).values[0])
+        if not why and of.endswith("_safety"):
+            why = why_no_safety(base.built({}))
         raise InputError(
             f"{of} is not known of the case itself{why and f': {why}'}", file=base.name
         )
@@ -235,7 +237,7 @@ def _figure(data: xr.Dataset, of: str, law: str | None) -> xr.DataArray:
         for name, values in data.data_vars.items()
         if {*values.dims} == {"law", "point"}
         and np.issubdtype(values.dtype, np.floating)
-        and name not in _NO_FIGURES
+        and name not in NO_FIGURES
     ]
     if of not in figures:
         raise InputError(f"{shown(of)} has no derivatives here{nearest(of, figures)}")

@@ -29,6 +29,7 @@ from pitchpoint.runs.optimum_search import (
 )
 from pitchpoint.runs.optimum_task import (
     DESIGNS_FILE,
+    NEW_DESIGNS,
     OptimiserTask,
     ResultLimit,
     VariedKey,
@@ -151,8 +152,10 @@ def optimise(
         variant: of the case, the first one by default.
         friction: laws of one's own, see `run_case`.
         folder: where the best design goes as a case file, and every design that is computed as a line of a
-            table, as soon as it is; nothing is written by default.
-        overwrite: True to replace both files.
+            table, as soon as it is; nothing is written by default. Under a law of one's own there is no case
+            file, which could not hold it.
+        overwrite: True to replace both files, when the design is there; until then designs of the search are
+            in `designs.new.csv` beside them.
         progress: told about designs.
 
     Returns:
@@ -176,16 +179,17 @@ def optimise(
             ...
         pitchpoint.errors.InputError: tian2024: gears.profile_shift: from 0.6 to 0 is no range; write "0:0.6"
     """
-    demand_arguments(variant=variant, friction=friction, folder=folder, overwrite=overwrite)
-    held = as_case(case)
-    chosen = Case(held, variant=held.variants[0] if variant is None else variant)
-    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     given: dict[str, Any] = {
         "vary": vary,
         "minimise": minimise,
         "maximise": maximise,
         "subject_to": subject_to,
     }
+    demand_arguments(**given, law=law, starts=starts, variant=variant)
+    demand_arguments(friction=friction, folder=folder, overwrite=overwrite)
+    held = as_case(case)
+    chosen = Case(held, variant=held.variants[0] if variant is None else variant)
+    base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     stated = {name: value for name, value in given.items() if value is not None}
     table = table_of_optimiser(chosen)
     if vary is None and table is None:
@@ -237,17 +241,13 @@ def _solved(
     """Search, then run what was found."""
     if folder is not None:
         make_folder(folder)
-        for path in (folder / CASE, folder / DESIGNS_FILE):
-            if path.exists() and not overwrite:
-                raise InputError(
-                    "is there already; name another folder, or overwrite", file=str(path)
-                )
-            path.unlink(missing_ok=True)
-        task.file.path = folder / DESIGNS_FILE
+        _demand_free(task, folder, overwrite)
     start = {name: float(values[0]) for name, values in task.values([{}])[0].items()}
     task.file.rows.clear()
-    if task.file.path is not None:
-        task.file.path.unlink()
+    if folder is not None:
+        earlier = any((folder / name).exists() for name in (CASE, DESIGNS_FILE))
+        task.file.path = folder / (NEW_DESIGNS if earlier else DESIGNS_FILE)
+        task.file.path.unlink(missing_ok=True)
     searches: list[tuple[dict[str, Any], ConstrainedSearch]] = []
     interrupted = False
     try:
@@ -275,8 +275,14 @@ def _solved(
                 multipliers = None
     changes = _written_out(task, combination, point)
     best, warnings = _ran(task, changes, columns, search.spread)
-    if folder is not None and not task.base.own:
-        write_case_copy(task.base.computed.document(**changes), folder)
+    if folder is not None and task.file.path is not None:
+        if (
+            task.base.own
+        ):  # no case file holds a law of one's own, least of all that of another design
+            (folder / CASE).unlink(missing_ok=True)
+        else:
+            write_case_copy(task.base.computed.document(**changes), folder)
+        task.file.path.replace(folder / DESIGNS_FILE)
     return _optimum(
         task,
         changes=changes,
@@ -287,6 +293,19 @@ def _solved(
         warnings=warnings,
         folder=folder,
     )
+
+
+def _demand_free(task: OptimiserTask, folder: Path, overwrite: bool) -> None:
+    """InputError where results would take the place of the case that is varied, or of others unasked."""
+    varied, design = (task.base.folder or Path()) / CASE, folder / CASE
+    of_case = Path(task.base.name).name == CASE and task.base.folder is not None
+    if of_case and design.exists() and varied.exists() and design.samefile(varied):
+        raise InputError(
+            "is the case that is varied; name another folder for the design", file=str(design)
+        )
+    for path in (design, folder / DESIGNS_FILE):
+        if path.exists() and not overwrite:
+            raise InputError("is there already; name another folder, or overwrite", file=str(path))
 
 
 def _search_all(
@@ -435,7 +454,7 @@ def _ran(
         spread: of the aim over all designs.
     """
     parts = ["operation", *(["strength"] if STRENGTH.why_not(task.built) is None else [])]
-    parts += [one.part for one in task.figures if one.part]
+    parts += [one.part_of_run for one in task.figures if one.part_of_run]
     with TemporaryDirectory() as place:
         write_case_copy(task.base.computed.document(**changes), Path(place))
         file = str(Path(place) / CASE)

@@ -18,6 +18,7 @@ from jaxtyping import Bool, Float
 from pitchpoint import units
 from pitchpoint._jax import jax
 from pitchpoint.analyses.design_batch import CaseDesigns
+from pitchpoint.analyses.strength import why_no_safety
 from pitchpoint.analyses.studies import demand_one
 from pitchpoint.cases.built import Built
 from pitchpoint.cases.built_drive import Ready
@@ -33,7 +34,14 @@ from pitchpoint.runs.optimum_search import STEP, ConstrainedSearch
 from pitchpoint.runs.run import FrictionChoice, Outcome, run_case
 from pitchpoint.runs.sought_figures import SoughtFigure, value_in, values_of_study
 
-__all__ = ["DESIGNS_FILE", "OptimiserTask", "ResultLimit", "VariedKey", "optimiser_task"]
+__all__ = [
+    "DESIGNS_FILE",
+    "NEW_DESIGNS",
+    "OptimiserTask",
+    "ResultLimit",
+    "VariedKey",
+    "optimiser_task",
+]
 
 MOST_COMBINATIONS = 200
 """Products of lists of values that are tried one by one."""
@@ -55,7 +63,13 @@ DIFFERENTIABLE = {
 DESIGNS_FILE = "designs.csv"
 """File in the folder with every design that was computed."""
 
+NEW_DESIGNS = "designs.new.csv"
+"""The same as long as results of an earlier search stand beside it."""
+
 _LIMIT = re.compile(r"\s*([\w.]{1,200}?)\s*(>=|<=|==|=|≥|≤|>|<)\s*([^<>=]{1,100}?)\s*")
+_STRENGTH = re.compile(r"(?:^|\.)(?:materials|strength)\.")
+"""Keys that decide which limits of materials are known."""
+
 _WAYS = {">": ">=", "≥": ">=", "<": "<=", "≤": "<=", "==": "="}
 
 
@@ -378,6 +392,14 @@ def optimiser_task(
         wrong.add(InputError('names no key; write "gears.profile_shift.1" = "0:0.6"', key="vary"))
     wrong.demand_none()
     assert aim is not None
+    law = law or laws[0]
+    if not any(_STRENGTH.search(one.key) for one in keys if one is not None):
+        asked = {"maximise" if largest else "minimise": aim}
+        asked |= {f"subject_to {limit.text}": limit.figure for limit in limits if limit is not None}
+        for place, figure in asked.items():
+            lack = _why_no_figure(figure, study, built, law)
+            if lack:
+                raise InputError(f"{figure.name} is not known: {lack}", file=case.name, key=place)
     varied = tuple(one for one in keys if isinstance(one, VariedKey))
     listed = tuple(one for one in keys if isinstance(one, StudyAxis))
     count = int(np.prod([len(axis.values) for axis in listed], initial=1))
@@ -389,7 +411,7 @@ def optimiser_task(
         case=case,
         base=base,
         built=built,
-        law=law or laws[0],
+        law=law,
         varied=varied,
         listed=listed,
         aim=aim,
@@ -398,6 +420,13 @@ def optimiser_task(
         starts=(starts or usual) if varied else 0,
         friction=friction,
     )
+
+
+def _why_no_figure(figure: SoughtFigure, study: Any, built: Ready, law: str) -> str:
+    """Why no design has a safety that the case as given lacks; empty where some may have it."""
+    if figure.part or not figure.variable.endswith("_safety"):
+        return ""
+    return why_no_safety(built) if np.isnan(values_of_study(study, figure, law, 1)[0]) else ""
 
 
 def _aimed_at(name: str, study: Any, built: Ready, largest: bool) -> SoughtFigure:

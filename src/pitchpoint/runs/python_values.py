@@ -126,6 +126,10 @@ def _are_names(value: Any) -> bool:
     return listed and all(map(_is_name, value))
 
 
+def _are_limits(value: Any) -> bool:
+    return _is_name(value) or _are_names(value)
+
+
 def _are_laws(value: Any) -> bool:
     listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 0
     return callable(value) or (listed and all(callable(law) or _is_name(law) for law in value))
@@ -157,6 +161,9 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     ),
     "how": (_is_name, 'the name of a way to lay out a study, "grid",'),
     "key": (_is_name, 'a key, "operation.torque",'),
+    "law": (_is_name, "the name of a friction law"),
+    "maximise": (_is_name, 'the name of a result, "mean_efficiency",'),
+    "minimise": (_is_name, 'the name of a result, "mean_loss",'),
     "n": (_whole(1), "a whole number from 1 on"),
     "only": (_are_names, 'a list of names of variants, ["default"],'),
     "over": (_by_key, "a dictionary of values by key"),
@@ -165,9 +172,12 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "scheduler": (_is_name, 'the address of a scheduler, "tcp://host:8786",'),
     "seed": (_whole(0), "a whole number from 0 on"),
     "settings": (_by_key, "a dictionary of values by key"),
+    "starts": (_whole(0), "a whole number from 1 on"),
     "studies": (_are_studies, "a dictionary of studies by name"),
+    "subject_to": (_are_limits, 'a limit, "root_safety >= 1.5", or a list of such,'),
     "tolerances": (_is_tolerance, '"uniform" or "normal"'),
     "variant": (_is_name, "the name of a variant"),
+    "vary": (_by_key, "a dictionary of ranges or lists of values by key"),
     "workers": (_whole(1), "a whole number from 1 on"),
 }
 """Which values an argument takes, and what they are."""

@@ -18,7 +18,10 @@ from pitchpoint.results.variable import Variable
 from pitchpoint.results.variables import VARIABLES, variable_of
 from pitchpoint.runs.run import Outcome
 
-__all__ = ["SoughtFigure", "value_in", "values_of_study"]
+__all__ = ["NO_FIGURES", "SoughtFigure", "value_in", "values_of_study"]
+
+NO_FIGURES = ("residual", "iterations", "locked", "turns", "turns_change", "meeting_error")
+"""What a study has beside results: how its solves ended."""
 
 _EXTREMES = ("least_", "largest_")
 """What names of a study begin with that a run has of each gear."""
@@ -30,6 +33,12 @@ _WHICH = (
 
 _MASS = {"reflected": "drive_mass", "bodies": "body_mass", "inspection": "disc_mass"}
 """Where the mass of all bodies stands, by part: their sum."""
+
+_OF_RUN = {"output_backlash": "reflected"}
+"""Parts of a run that have what many designs have at once, beside operation and strength."""
+
+_AS_GIVEN = "nominal"
+"""Case, of those between tolerances, of which many designs have figures."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +76,18 @@ class SoughtFigure:
         variable, place = words[0], ".".join(words[1:])
         if not part:
             for at_once in (variable, *(f"{which}{variable}" for which in _EXTREMES if not place)):
-                if at_once in study and study[at_once].dtype.kind == "f":
+                is_figure = at_once in study and at_once not in NO_FIGURES
+                if is_figure and study[at_once].dtype.kind == "f":
                     return cls(name, at_once, "", place, variable_of(study, at_once))
-        part, variable = _part_with(part, variable, built, [str(key) for key in study])
+        part, variable = _part_with(
+            part, variable, built, [str(key) for key in study if key not in NO_FIGURES]
+        )
         return cls(name, variable, part, place, VARIABLES[variable])
+
+    @property
+    def part_of_run(self) -> str:
+        """Part of a run that has it; empty for operation and strength."""
+        return self.part or _OF_RUN.get(self.variable, "")
 
     @property
     def unit(self) -> str:
@@ -134,13 +151,16 @@ def value_in(outcome: Outcome, figure: SoughtFigure, law: str) -> float:
         InputError: its part does not have it; it is several numbers, and no place says which.
     """
     parts: Mapping[str, xr.Dataset] = outcome.parts
-    holding = [figure.part] if figure.part else ["operation", "strength", *parts]
+    part = figure.part_of_run
+    holding = [part] if part else ["operation", "strength", *parts]
     for name in holding:
         data = parts.get(name)
         if data is not None and figure.variable in data:
             values = data[figure.variable]
             if "law" in values.dims:
                 values = values.sel(law=law)
+            if "case" in values.dims and not figure.part:
+                values = values.sel(case=_AS_GIVEN)
             return value_of(values, figure)
     data = parts.get(figure.part)
     if data is not None:

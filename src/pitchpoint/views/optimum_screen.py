@@ -1,11 +1,11 @@
 """The first screen of an optimiser: the aim as given and at best, keys, limits and what they cost."""
 
+import shlex
 from collections.abc import Iterator
 from typing import Any
 
 from pitchpoint.cases.record import CASE
 from pitchpoint.errors import shorten
-from pitchpoint.input.quantities import shown
 from pitchpoint.registry import enumerated
 from pitchpoint.results.store import without_nan
 from pitchpoint.runs.optimise import Optimum
@@ -185,7 +185,8 @@ def _foot(optimum: Optimum) -> Iterator[str]:
         )
         yield f"SLSQP from several designs; derivatives by {automatic}{by_differences}."
     if optimum.folder is not None:
-        yield f"Case: pitchpoint run {shown(str(optimum.folder / CASE))[1:-1]}"
+        if (optimum.folder / CASE).is_file():  # there is none under a law of one's own
+            yield f"Case: pitchpoint run {shlex.quote(str(optimum.folder / CASE))}"
         yield f"Every design: {optimum.folder / DESIGNS_FILE}"
     else:
         yield "-o FOLDER writes the design as a case file."
