@@ -17,6 +17,8 @@ from pitchpoint._jax import double_precision
 from pitchpoint.cases.handed_over import write_case_copy
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.record import CASE
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.case import Case
@@ -36,7 +38,13 @@ from pitchpoint.views.designs_page import (
 from pitchpoint.views.many_designs import SHOWN
 from pitchpoint.views.section import Block, Paragraph, SectionTable
 
-__all__ = ["MOST_DRAWN", "render_study", "spread_evenly", "write_study_folder"]
+__all__ = [
+    "MOST_DRAWN",
+    "demand_study_folder",
+    "render_study",
+    "spread_evenly",
+    "write_study_folder",
+]
 
 MOST_DRAWN = 5000
 """Designs that a page draws, beside those on the fronts."""
@@ -187,6 +195,29 @@ def render_study(study: xr.Dataset, *, case_file: Path | None = None) -> str:
     return render_designs(_Summed(_Designs(study), case_file).page)
 
 
+_HEAD = "The case of a study: its designs are this case with some keys set."
+"""First line of the case in a folder of a study, which tells it from a case that somebody wrote."""
+
+
+def demand_study_folder(folder: Path, case: str) -> None:
+    """InputError for a folder whose case file is that of the study itself, or not one that a study wrote.
+
+    Args:
+        folder: of the pieces of the study.
+        case: file or name of the case that is studied.
+    """
+    path = folder / CASE
+    if not path.is_file():
+        return
+    with path.open("rb") as file:
+        written = file.read(len(_HEAD) + 2) == f"# {_HEAD}".encode()
+    if not written or (Path(case).is_file() and path.samefile(case)):
+        raise InputError(
+            f"{shown(str(folder))} holds a {CASE} that the study would replace; give a folder without one",
+            key="folder",
+        )
+
+
 @double_precision()
 def write_study_folder(study: xr.Dataset, case: Case, folder: Path) -> None:
     """Write the page of a study into its folder, and the case that its designs are changes of.
@@ -204,7 +235,7 @@ def write_study_folder(study: xr.Dataset, case: Case, folder: Path) -> None:
         variant, _ = with_tolerances(variant, tolerances)
     document = variant.document()
     tree = {key: table for key, table in document.tree.items() if key != "study"}
-    write_case_copy(replace(document, tree=tree), folder)
+    write_case_copy(replace(document, tree=tree), folder, head=_HEAD)
     write_text(folder / "report.html", render_study(study, case_file=folder / CASE))
 
 
