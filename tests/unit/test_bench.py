@@ -109,7 +109,7 @@ def test_the_page_has_the_table_and_no_name_twice():
     for name in ("efficiency", "efficiency_over_speed", "loss", "torsional_stiffness"):
         assert f'id="bench_{name}"' in page
     assert 'id="bench_back_efficiency"' not in page
-    assert "Friction holds every drive." in page
+    assert "No drive has an efficiency here." in page
 
 
 PAIR = {
