@@ -501,6 +501,26 @@ def test_units_and_value_stand_beside_the_gradients(result: pp.Result) -> None:
         result.gradients("mean_los")
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: pp.gradients(PAIR, of=5), "of: 5 was given where the name of a figure"),
+        (lambda: pp.gradients(PAIR, of=["mean_loss"]), "of: the list "),
+        (lambda: pp.gradients(PAIR, by=5), "by: 5 was given where a key or a list of keys"),
+        (lambda: pp.gradients(PAIR, law=3), "law: 3 was given where the name of a friction law"),
+        (lambda: pp.write_report(5, "x.html"), "5 was given; a report is of what `run`"),
+        (lambda: pp.write_report({}, "x.html"), "the table {  } was given; a report is of what"),
+        (lambda: pp.write_report({}, 5), "path: 5 was given where the name of a file"),
+    ],
+)
+def test_arguments_of_another_kind_are_refused_in_a_sentence(
+    call: Callable[[], Any], words: str
+) -> None:
+    with pytest.raises(pp.InputError) as caught:
+        call()
+    assert str(caught.value).startswith(words)
+
+
 def test_what_is_not_known_of_a_material_spoils_no_derivative(result: pp.Result) -> None:
     """Nor does a key that moves nothing else have one."""
     steel = {"young": 206e9, "poisson": 0.3, "density": 7850.0}  # without hardness

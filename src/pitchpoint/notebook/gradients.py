@@ -32,6 +32,7 @@ from pitchpoint.notebook.differences import (
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case, CaseLike, as_case
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, with_user_law
 
 if TYPE_CHECKING:
@@ -89,10 +90,11 @@ def gradients(
     differences of designs with two steps, which agree. A key has no row where any change makes gears of
     another form, such as the helix angle of a spur pair, and where a figure has a kink.
     """
+    demand_arguments(of=of, by=by, law=law, variant=variant, friction=friction)
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     built = base.built({})
-    names = [chosen.key(name) for name in ([by] if isinstance(by, str) else by)]
+    names = [chosen.key(name) for name in ([by] if isinstance(by, str) else by or ())]
     if built.numbers or of not in FIGURES:
         return _by_designs(base, built, of, names, law)
     (mesh,) = built.meshes

@@ -1,6 +1,6 @@
 """One bench for drives of any family: what each answers for its task, in one table and on the same axes."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
@@ -34,9 +34,10 @@ from pitchpoint.results.variable import (
     torque,
     torsional_stiffness,
 )
-from pitchpoint.runs.case import CaseLike, selected_variants
+from pitchpoint.runs.case import Case, CaseLike, selected_variants
 from pitchpoint.runs.compared_designs import design_names, resolved_reference
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import Progress
 from pitchpoint.units import convert
 
@@ -204,7 +205,7 @@ class Bench:
 
 @double_precision()
 def bench(
-    cases: Sequence[CaseLike],
+    cases: CaseLike | Sequence[CaseLike],
     *,
     names: Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -212,8 +213,8 @@ def bench(
     """Drives of any families beside each other: what each answers at its operating point.
 
     Args:
-        cases: names of shipped cases, files, folders of results, `Case`s or tables; of several variants the
-            first one, or "file.toml@variant".
+        cases: one or a list, each the name of a shipped case, a file, a folder of results, a `Case` or
+            tables; of several variants the first one, or "file.toml@variant".
         names: of the drives on the bench, one for each; those of the cases unless given.
         progress: told about each drive.
 
@@ -234,7 +235,16 @@ def bench(
             ...
         pitchpoint.errors.InputError: no drive was named; name cases, files or folders of results
     """
-    listed = [cases] if isinstance(cases, str) else [*cases]
+    demand_arguments(names=names)
+    if isinstance(cases, str | Path | Case | Mapping):
+        listed: list[CaseLike] = [cases]
+    elif isinstance(cases, Iterable):
+        listed = [*cases]
+    else:
+        raise InputError(
+            f"{shown(cases)} was given; a bench takes a case or a list of cases, each a file, the name of a "
+            "shipped case, or a dictionary of tables"
+        )
     if not listed:
         raise InputError("no drive was named; name cases, files or folders of results")
     if names is not None and len(names) != len(listed):

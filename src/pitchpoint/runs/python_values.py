@@ -126,6 +126,14 @@ def _are_names(value: Any) -> bool:
     return listed and all(map(_is_name, value))
 
 
+def _are_labels(value: Any) -> bool:
+    return _are_names(value) and all(name.strip() for name in value)
+
+
+def _are_keys(value: Any) -> bool:
+    return _is_name(value) or _are_names(value)
+
+
 def _are_laws(value: Any) -> bool:
     listed = isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 0
     return callable(value) or (listed and all(callable(law) or _is_name(law) for law in value))
@@ -149,6 +157,7 @@ def _are_studies(value: Any) -> bool:
 
 _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "analyses": (_are_names, 'a list of names of parts, ["operation", "cycle"],'),
+    "by": (_are_keys, 'a key or a list of keys, ["operation.torque"],'),
     "changes": (_by_key, "a dictionary of values by key"),
     "folder": (_is_path, "the name of a folder"),
     "friction": (
@@ -157,10 +166,14 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     ),
     "how": (_is_name, 'the name of a way to lay out a study, "grid",'),
     "key": (_is_name, 'a key, "operation.torque",'),
+    "law": (_is_name, "the name of a friction law"),
     "n": (_whole(1), "a whole number from 1 on"),
+    "names": (_are_labels, 'a list of names, none of them empty, ["sets", "wave"],'),
+    "of": (_is_name, 'the name of a figure, "mean_loss",'),
     "only": (_are_names, 'a list of names of variants, ["default"],'),
     "over": (_by_key, "a dictionary of values by key"),
     "overwrite": (_is_flag, "True or False"),
+    "path": (_is_path, "the name of a file"),
     "piece": (_whole(1), "a whole number from 1 on"),
     "scheduler": (_is_name, 'the address of a scheduler, "tcp://host:8786",'),
     "seed": (_whole(0), "a whole number from 0 on"),
@@ -172,7 +185,7 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
 }
 """Which values an argument takes, and what they are."""
 
-_NEEDED = ("key",)
+_NEEDED = ("key", "of", "path")
 
 
 def demand_arguments(**given: Any) -> None:
