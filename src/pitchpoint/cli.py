@@ -514,7 +514,7 @@ def study(
         indices_of_many,
         write_rows,
     )
-    from pitchpoint.views.study_report import write_study_folder
+    from pitchpoint.views.study_report import demand_study_folder, write_study_folder
 
     settings = _settings(set_ or [])
     chosen = (Case(case) if variant is None else Case(case, variant=variant)).set(settings)
@@ -526,6 +526,7 @@ def study(
         )
     usual = default_folder(case, Path("results"), settings) / "study"
     folder = output or folder_of_table(of_table, chosen) or usual
+    demand_study_folder(folder, case)
     with _progress(folder, "pieces") as progress:
         in_units = partial(
             compute,

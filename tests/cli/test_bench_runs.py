@@ -161,3 +161,18 @@ def test_the_command_writes_a_page_a_table_and_records(tmp_path, capsys, monkeyp
     assert record["drive"] == "set"
     written = {path.name for path in (tmp_path / "out").iterdir()}
     assert written == {"bench.html", "bench.csv", "bench.json"}
+
+
+@pytest.mark.whole
+def test_a_point_out_of_range_leaves_the_others_there():
+    """At 125 % of the speed the case is refused: that point alone is none, and the refusal is a remark."""
+    fast = pp.Case(SETS["pair"]).set({"operation.speed": "800000 rpm"})
+    (drive,) = pp.bench([fast]).drives
+    for name in ("efficiency", "back_efficiency"):
+        assert np.isfinite(getattr(drive, name)).all()
+        assert np.isfinite(getattr(drive, f"{name}_over_speed")).tolist() == [True] * 4 + [False]
+        assert {f"{name}_quarter", f"{name}_tenth"} <= {*drive.figures}
+    assert drive.efficiency_over_speed[3] == pytest.approx(drive.figures["efficiency"], rel=1e-9)
+    (gap,) = (one for one in drive.remarks if "without an efficiency" in one)
+    assert gap.startswith("without an efficiency at 125 % of the speed: ")
+    assert 'operation.speed: "1000000 rpm" is out of range' in gap

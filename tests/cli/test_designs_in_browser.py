@@ -102,6 +102,22 @@ def count(study: xr.Dataset, **ends: tuple[float, float]) -> int:
     return int(chosen.sum())
 
 
+def test_a_key_with_one_level_has_its_name_at_both_ends_of_the_scale(
+    chromium: Browser, study: xr.Dataset, tmp_path: Path
+) -> None:
+    one = study.assign_coords({KEYS[0]: (study[KEYS[0]].dims, np.full(512, "steel"))})
+    (tmp_path / "one.html").write_text(render_study(one), "utf-8")
+    chromium.open(tmp_path / "one.html", 1200)
+    chromium.wait("document.documentElement.dataset.drawn === 'all'")
+    chromium.run(
+        f"(() => {{ const box = document.getElementById('colour'); box.value = '{KEYS[0]}';"
+        "box.dispatchEvent(new Event('change', { bubbles: true })); })()"
+    )
+    settled(chromium)
+    told = chromium.run("document.getElementById('scale').textContent")
+    assert told == f"{KEYS[0]}: steelsteel"
+
+
 def test_a_drag_along_an_axis_selects_what_xarray_selects(page: Browser, study: xr.Dataset) -> None:
     assert selected(page) == count(study) > 400
     torque = brush(page, KEYS[0], 0.3, 0.7)

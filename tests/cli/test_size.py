@@ -191,6 +191,8 @@ def test_the_page_has_the_gears_of_every_design_and_opens_those_of_the_front(
         assert widths == [table["face_width"] for table in gears]
         assert columns["mass"]["values"][0][place] == pytest.approx(design.mass, rel=1e-5)
         assert columns["loss"]["values"][0][place] == pytest.approx(100 * design.loss, rel=1e-5)
+        per_arcmin = design.stiffness * np.pi / 10800.0
+        assert columns["stiffness"]["values"][0][place] == pytest.approx(per_arcmin, rel=1e-5)
     for link in re.findall(r'"link": ?"([^"]+)"', json.dumps(content["opening"])):
         assert link.removesuffix(".toml") in sizing.front
 

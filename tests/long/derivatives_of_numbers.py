@@ -107,7 +107,7 @@ def compared(name: str) -> int:
     far, keys = 0, dict.fromkeys(key for table in tables.values() for key in table.index)
     value_of = {key: float(t.value[key]) for t in tables.values() for key in t.index}
     for key in keys:
-        step = STEP * (abs(value_of[key]) if abs(value_of[key]) > 1e-7 else 1.0)
+        step = STEP * (abs(value_of[key]) or 1.0)
         ends = []
         for way in (-1.0, 1.0):
             try:

@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+import pitchpoint as pp
 from pitchpoint.errors import InputError
 from pitchpoint.runs.bench import BENCHED, LOADS, SPEEDS, Bench, BenchedDrive, bench
 from pitchpoint.views.bench import bench_page, bench_screen, write_bench
@@ -109,7 +110,7 @@ def test_the_page_has_the_table_and_no_name_twice():
     for name in ("efficiency", "efficiency_over_speed", "loss", "torsional_stiffness"):
         assert f'id="bench_{name}"' in page
     assert 'id="bench_back_efficiency"' not in page
-    assert "Friction holds every drive." in page
+    assert "No drive has an efficiency here." in page
 
 
 PAIR = {
@@ -126,6 +127,11 @@ PAIR = {
         ([], "no drive was named"),
         (["planetary.toml.txt"], "planetary.toml.txt"),
         ([PAIR], "carries nothing at its operating point"),
+        (PAIR, "carries nothing at its operating point"),
+        (pp.Case(PAIR), "carries nothing at its operating point"),
+        (5, "5 was given; a bench takes a case or a list of cases"),
+        (None, "None was given; a bench takes a case or a list of cases"),
+        ([3], "3 was given; a case is a file"),
         (["tian2024", "tian2024"], '"tian2024" was named twice'),
         ([PAIR, PAIR], '"case" was named twice'),
     ],
@@ -139,5 +145,8 @@ def test_what_is_no_drive_is_refused_in_a_sentence(cases, words):
 def test_names_are_one_for_each_case():
     with pytest.raises(InputError, match="names: 1 were given for 2 cases"):
         bench([PAIR, PAIR], names=["first"])
+    for names in (5, "a", [3], [""]):
+        with pytest.raises(InputError, match=r"names: .* was given where a list of names"):
+            bench([PAIR], names=names)
     with pytest.raises(InputError, match='names: "pair" was named twice'):
         bench([PAIR, PAIR], names=["pair", "pair"])

@@ -124,6 +124,21 @@ def test_of_many_designs_some_are_drawn_with_the_fronts_of_all(
         assert values["mean_loss"][1][order[number]] == pytest.approx(costs[0][number], rel=1e-5)
 
 
+def test_long_fronts_are_thinned_and_keep_their_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over the speed alone loss and film are at odds: every design is on their front."""
+    speeds = {"start": "500 rpm", "stop": "3000 rpm", "count": 12_000}
+    study = quick_study(
+        monkeypatch, "grid", over={KEYS[0]: [50.0], KEYS[1]: speeds, KEYS[2]: [0.02]}
+    )
+    page = render_study(study)
+    labels = content_of(page)["labels"]
+    assert 5000 <= len(labels) <= 5000 + 300 * 2 * 3 and {0, 11_999} <= {*labels}
+    assert "Of a front with more than 300 designs, 300 are drawn, evenly from end to end" in page
+    monkeypatch.setattr(study_report, "MOST_NUMBERS", 10_000)
+    columns = content_of(render_study(study))["columns"]
+    assert sum(np.size(column["values"]) for column in columns) <= 10_000
+
+
 def test_a_choice_meets_every_value_of_a_grid() -> None:
     """A grid of 100 by 100 by 100 in even steps of 200 would meet two values of its last key."""
     taken = spread_evenly(1_000_000, 5000)

@@ -30,7 +30,12 @@ _HEAD = "The case as it was run, settings applied; pitchpoint run computes it ag
 
 
 def write_case_copy(
-    document: Document, folder: Path, *, title: str = "", studies: Mapping[str, Study] | None = None
+    document: Document,
+    folder: Path,
+    *,
+    title: str = "",
+    studies: Mapping[str, Study] | None = None,
+    head: str = _HEAD,
 ) -> None:
     """Write the case file of a result, and copies of the files that it names.
 
@@ -39,6 +44,7 @@ def write_case_copy(
         folder: of the result.
         title: where the case has none.
         studies: beside those of the case.
+        head: comment on its first line.
 
     Raises:
         OSError: the disk is full, say.
@@ -46,7 +52,7 @@ def write_case_copy(
     copies = dict(_copies(document))
     for source, name in copies.items():
         _copy(Path(source), folder / FILES / name)
-    text = as_toml(document, title=title, studies=studies, files=copies)
+    text = as_toml(document, title=title, studies=studies, files=copies, head=head)
     write_text(folder / CASE, text)
 
 
@@ -56,6 +62,7 @@ def as_toml(
     title: str = "",
     studies: Mapping[str, Study] | None = None,
     files: Mapping[str, str] | None = None,
+    head: str = _HEAD,
 ) -> str:
     """A case as text of a case file: each value as it was given, with its mark.
 
@@ -64,6 +71,7 @@ def as_toml(
         title: where the case has none.
         studies: beside those of the case.
         files: names in the folder `files` by those that the case has for its files.
+        head: comment on its first line.
     """
     of_studies = {
         name: study.model_dump(exclude_unset=True) for name, study in (studies or {}).items()
@@ -73,7 +81,7 @@ def as_toml(
         tree["studies"] = {**tree.get("studies", {}), **of_studies}
     every = dict.fromkeys((*_FIRST, *tree))
     toml = tomlkit.document()
-    toml.add(tomlkit.comment(_HEAD))
+    toml.add(tomlkit.comment(head))
     pen = _Pen(document.provenance, {} if files is None else files)
     for key, item in pen.entries({key: tree[key] for key in every if key in tree}, ""):
         toml.add(key, item)

@@ -32,9 +32,10 @@ __all__ = [
 ]
 
 STEP = 1e-4
-"""Larger step, relative; absolute for values below `LEAST`. The other one is half of it."""
+"""Larger step over the value, or over the unit in which it is shown for a value of zero."""
 
-LEAST = 1e-7
+ZERO = 1e-9
+"""Value, in the unit in which it is shown, up to which it is zero with what rounding leaves."""
 
 SMOOTH = 0.02
 """How far, over the larger one, both differences of a smooth figure may lie apart."""
@@ -66,14 +67,21 @@ class CaseNumber:
     Attributes:
         key: dotted, of one of two gears with its number.
         value: [SI].
-        kind: of quantity.
+        quantity: kind and range.
         setting: key and value as a file has them, for another number [SI].
     """
 
     key: str
     value: float
-    kind: str
+    quantity: Quantity
     setting: Callable[[float], tuple[str, Any]]
+
+    @property
+    def step(self) -> float:
+        """Change of the number by which differences are taken [SI]."""
+        one, none = (self.quantity.si(f"{k} {self.quantity.unit}") for k in (1, 0))
+        size = one - none  # of a temperature too, whose zero is not that of its unit
+        return STEP * (abs(self.value) if abs(self.value) > ZERO * size else size)
 
 
 @dataclass(frozen=True)
@@ -120,14 +128,14 @@ def numbers_of_file(base: Variant) -> Iterator[CaseNumber]:
             continue
         try:
             if not isinstance(value, list | tuple):
-                yield CaseNumber(key, quantity.si(value), quantity.kind, setting_of(key))
+                yield CaseNumber(key, quantity.si(value), quantity, setting_of(key))
                 continue
             every = [quantity.si(one) for one in value]
         except InputError:
             continue  # a name in the place of a number
         for place, one in enumerate(every):
             setting = setting_of(key, every, place)
-            yield CaseNumber(f"{key}.{place + 1}", one, quantity.kind, setting)
+            yield CaseNumber(f"{key}.{place + 1}", one, quantity, setting)
 
 
 def setting_of(
@@ -165,7 +173,7 @@ def by_differences(
     Raises:
         InputError: no such figure or law, or a case that has no figures.
     """
-    steps = [STEP * (abs(one.value) if abs(one.value) > LEAST else 1.0) for one in numbers]
+    steps = [one.step for one in numbers]
     changes: list[dict[str, Any]] = [{}]
     for one, step in zip(numbers, steps, strict=True):
         changes += [dict([one.setting(one.value + part * step)]) for part in _PARTS]

@@ -1,6 +1,6 @@
 """Derivatives of the main figures by the keys of a case file."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +32,7 @@ from pitchpoint.notebook.differences import (
 from pitchpoint.registry import nearest
 from pitchpoint.results.variables import VARIABLES
 from pitchpoint.runs.case import Case, CaseLike, as_case
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import FrictionChoice, with_user_law
 
 if TYPE_CHECKING:
@@ -47,12 +48,8 @@ FIGURES = {
 }
 """Names of figures in results, and those of the cycle."""
 
-STEP = 1e-4
-"""Step of differences of the design against a value; relative, absolute for values below a thousandth."""
-
 _TABLES = ("gears", "materials", "lubricant", "roughness", "operation", "losses")
 _BESIDE = ("strength", "dynamics")
-_LEAST = 1e-3
 
 Leaves = list[np.ndarray]
 
@@ -93,10 +90,11 @@ def gradients(
     differences of designs with two steps, which agree. A key has no row where any change makes gears of
     another form, such as the helix angle of a spur pair, and where a figure has a kink.
     """
+    demand_arguments(of=of, by=by, law=law, variant=variant, friction=friction)
     chosen = as_case(case) if variant is None else Case(case, variant=variant)
     base = chosen.held[0] if friction is None else with_user_law(chosen.held[0], friction)
     built = base.built({})
-    names = [chosen.key(name) for name in ([by] if isinstance(by, str) else by)]
+    names = [chosen.key(name) for name in ([by] if isinstance(by, str) else by or ())]
     if built.numbers or of not in FIGURES:
         return _by_designs(base, built, of, names, law)
     (mesh,) = built.meshes
@@ -133,7 +131,7 @@ def _frame(
     rows = {
         one.key: {
             "value": one.value,
-            "unit": units.si_unit(one.kind) or "1",
+            "unit": units.si_unit(one.quantity.kind) or "1",
             "derivative": derived.by_key[one.key],
         }
         for one in numbers
@@ -172,7 +170,7 @@ def _rows(
     """Key and derivative of every number that moves the design; sentences on the others."""
     here = _numbers_of(built)
     for one in numbers:
-        moved = _moved(base, here, one.setting, one.value)
+        moved = _moved(base, here, one)
         if moved is None:
             without[one.key] = OTHER_FORM
         elif not any(np.any(part) for part in moved):
@@ -180,9 +178,6 @@ def _rows(
         else:
             pairs = zip(slopes, moved, strict=True)
             yield one.key, float(sum(np.sum(slope * step) for slope, step in pairs))
-
-
-Setting = Callable[[float], tuple[str, Any]]
 
 
 def _numbers(built: Built, tables: Sequence[str]) -> Iterator[CaseNumber]:
@@ -197,17 +192,18 @@ def _numbers(built: Built, tables: Sequence[str]) -> Iterator[CaseNumber]:
         for key, value in leaves({table: plain}):
             quantity = continuous(key)
             if quantity is not None and isinstance(value, float):
-                yield CaseNumber(key, value, quantity.kind, setting_of(key))
+                yield CaseNumber(key, value, quantity, setting_of(key))
             elif quantity is not None and isinstance(value, tuple):
                 for k, one in enumerate(value):
                     setting = setting_of(key, value, k)
-                    yield CaseNumber(f"{key}.{k + 1}", one, quantity.kind, setting)
+                    yield CaseNumber(f"{key}.{k + 1}", one, quantity, setting)
 
 
-def _moved(base: Variant, here: Inputs, setting: Setting, value: float) -> Leaves | None:
+def _moved(base: Variant, here: Inputs, number: CaseNumber) -> Leaves | None:
     """Derivatives of the numbers of the design by a key; one-sided at the end of its range."""
-    step = STEP * (abs(value) if abs(value) > _LEAST * STEP else 1.0)
-    above, below = (_built_at(base, here, setting(value + way * step)) for way in (1.0, -1.0))
+    step = number.step
+    ways = (number.setting(number.value + way * step) for way in (1.0, -1.0))
+    above, below = (_built_at(base, here, setting) for setting in ways)
     if above is None and below is None:
         return None
     own = _leaves(here)

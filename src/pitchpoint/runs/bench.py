@@ -1,6 +1,6 @@
 """One bench for drives of any family: what each answers for its task, in one table and on the same axes."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
 from pathlib import Path
@@ -21,6 +21,7 @@ from pitchpoint.cases.variant import Variant
 from pitchpoint.core.doubts import doubts_of, ranked_doubts
 from pitchpoint.errors import ConvergenceError, InputError, visible
 from pitchpoint.input.quantities import shown
+from pitchpoint.registry import enumerated
 from pitchpoint.results.variable import (
     Variable,
     angle,
@@ -33,10 +34,12 @@ from pitchpoint.results.variable import (
     torque,
     torsional_stiffness,
 )
-from pitchpoint.runs.case import CaseLike, selected_variants
+from pitchpoint.runs.case import Case, CaseLike, selected_variants
 from pitchpoint.runs.compared_designs import design_names, resolved_reference
 from pitchpoint.runs.jobs import jobs
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import Progress
+from pitchpoint.units import convert
 
 __all__ = ["BENCHED", "LOADS", "SPEEDS", "Bench", "BenchedDrive", "bench"]
 
@@ -95,6 +98,14 @@ Read = Callable[["_AtPoint"], float]
 
 class _LacksError(Exception):
     """Why a drive has no such figure."""
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """Efficiencies at `LOADS`, then at `SPEEDS`, and by place why some could not be computed."""
+
+    values: Float[np.ndarray, " point"]
+    refused: Mapping[int, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +205,7 @@ class Bench:
 
 @double_precision()
 def bench(
-    cases: Sequence[CaseLike],
+    cases: CaseLike | Sequence[CaseLike],
     *,
     names: Sequence[str] | None = None,
     progress: Progress | None = None,
@@ -202,8 +213,8 @@ def bench(
     """Drives of any families beside each other: what each answers at its operating point.
 
     Args:
-        cases: names of shipped cases, files, folders of results, `Case`s or tables; of several variants the
-            first one, or "file.toml@variant".
+        cases: one or a list, each the name of a shipped case, a file, a folder of results, a `Case` or
+            tables; of several variants the first one, or "file.toml@variant".
         names: of the drives on the bench, one for each; those of the cases unless given.
         progress: told about each drive.
 
@@ -224,7 +235,16 @@ def bench(
             ...
         pitchpoint.errors.InputError: no drive was named; name cases, files or folders of results
     """
-    listed = [cases] if isinstance(cases, str) else [*cases]
+    demand_arguments(names=names)
+    if isinstance(cases, str | Path | Case | Mapping):
+        listed: list[CaseLike] = [cases]
+    elif isinstance(cases, Iterable):
+        listed = [*cases]
+    else:
+        raise InputError(
+            f"{shown(cases)} was given; a bench takes a case or a list of cases, each a file, the name of a "
+            "shipped case, or a dictionary of tables"
+        )
     if not listed:
         raise InputError("no drive was named; name cases, files or folders of results")
     if names is not None and len(names) != len(listed):
@@ -271,14 +291,14 @@ class _AtPoint:
         built: the case.
         parts: of its result that the table reads.
         failed: what went wrong with others, by name.
-        forwards, backwards: its efficiencies at `LOADS`, then at `SPEEDS`.
+        forwards, backwards: its efficiencies.
     """
 
     built: Ready
     parts: Mapping[str, xr.Dataset]
     failed: Mapping[str, str]
-    forwards: np.ndarray
-    backwards: np.ndarray
+    forwards: _Curve
+    backwards: _Curve
 
     def part(self, name: str) -> xr.Dataset:
         """A part of the result; why it is not there, as an error."""
@@ -329,7 +349,7 @@ def _benched(name: str, variant: Variant, built: Ready) -> BenchedDrive:
             figures[figure] = read(at_point)
         except _LacksError as why:
             lacks[figure] = str(why)
-    remarks += _remarks(parts, figures)
+    remarks += [*_remarks(parts, figures), *_gaps(forwards, backwards)]
     return BenchedDrive(
         name,
         str(variant.document().tree.get("title", name)),
@@ -339,10 +359,10 @@ def _benched(name: str, variant: Variant, built: Ready) -> BenchedDrive:
         figures,
         lacks,
         tuple(map(str, remarks)),
-        forwards[: len(LOADS)],
-        backwards[: len(LOADS)],
-        forwards[len(LOADS) :],
-        backwards[len(LOADS) :],
+        forwards.values[: len(LOADS)],
+        backwards.values[: len(LOADS)],
+        forwards.values[len(LOADS) :],
+        backwards.values[len(LOADS) :],
     )
 
 
@@ -373,30 +393,47 @@ def _computed(
     return parts, failed
 
 
-def _efficiencies(variant: Variant, built: Ready) -> tuple[np.ndarray, np.ndarray]:
-    """Efficiencies forwards and backwards at `LOADS`, then at `SPEEDS`; not numbers where there is none.
+def _efficiencies(variant: Variant, built: Ready) -> tuple["_Curve", "_Curve"]:
+    """Efficiencies forwards and backwards.
 
     Each point is the case with that torque or speed, as a sweep has it.
     """
     point = built.case.operation
+    speed = convert(point.speed, "rpm", "rotational speed")
     changes = [
         *({"operation.torque": f"{part * point.load!r} N m"} for part in LOADS),
-        *({"operation.speed": f"{part * point.speed!r} rad/s"} for part in SPEEDS),
+        *({"operation.speed": f"{part * speed:.15g} rpm"} for part in SPEEDS),
     ]
-    points = [one for one in variant.built_each(changes) if not isinstance(one, InputError)]
-    if len(points) < len(changes):
-        nothing = np.full(len(changes), nan)
-        return nothing, nothing
-    return _along(points), _along([one.backwards for one in points])
+    points = variant.built_each(changes)
+    return _along(points), _along([_turned(one) for one in points])
 
 
-def _along(points: Sequence[Ready]) -> np.ndarray:
-    """Efficiencies of points under the first law; not numbers where friction locks, or nothing balances."""
+def _turned(point: Ready | InputError) -> Ready | InputError:
+    """The same point driven from its output; what is wrong with it."""
     try:
-        data = summaries(points, points[0].models[:1], {}, title="bench", may_lock=True)
-    except ConvergenceError:
-        return np.full(len(points), nan)
-    return np.asarray(data["mean_efficiency"].values[0])
+        return point if isinstance(point, InputError) else point.backwards
+    except InputError as error:
+        return error
+
+
+def _along(points: Sequence[Ready | InputError]) -> "_Curve":
+    """Efficiencies of points under the first law, not numbers where friction locks; why others are none."""
+    refused = {k: str(one) for k, one in enumerate(points) if isinstance(one, InputError)}
+    there = {k: one for k, one in enumerate(points) if not isinstance(one, InputError)}
+    values = np.full(len(points), nan)
+    if not there:
+        return _Curve(values, refused)
+    ready = [*there.values()]
+    try:
+        data = summaries(ready, ready[0].models[:1], {}, title="bench", may_lock=True)
+    except ConvergenceError as error:
+        if len(points) == 1:
+            return _Curve(values, {0: str(error)})
+        alone = [_along([one]) for one in points]
+        lacking = {k: one.refused[0] for k, one in enumerate(alone) if one.refused}
+        return _Curve(np.concatenate([one.values for one in alone]), lacking)
+    values[[*there]] = data["mean_efficiency"].values[0]
+    return _Curve(values, refused)
 
 
 def _family(built: Ready) -> str:
@@ -480,6 +517,16 @@ def _remarks(parts: Mapping[str, xr.Dataset], figures: Mapping[str, float]) -> I
         yield "its torques from rest are lower bounds: no breakaway is given"
 
 
+def _gaps(forwards: _Curve, backwards: _Curve) -> Iterator[str]:
+    """Points of the curves that could not be computed, with the first reason of each axis."""
+    refused = {**backwards.refused, **forwards.refused}
+    for first, axis, parts in ((0, "load", LOADS), (len(LOADS), "speed", SPEEDS)):
+        places = [k for k in range(first, first + len(parts)) if k in refused]
+        if places:
+            percents = enumerated([f"{100.0 * parts[k - first]:g}" for k in places])
+            yield f"without an efficiency at {percents} % of the {axis}: {refused[places[0]]}"
+
+
 def _by_tolerances(parts: Mapping[str, xr.Dataset]) -> bool:
     """True where a tolerance makes the backlash differ, or it is the play of a strain wave gear."""
     plays = [
@@ -518,8 +565,9 @@ def _of_curve(curve: str, part: float) -> Read:
     """An efficiency at a part of the load."""
 
     def read(at: _AtPoint) -> float:
-        why = "friction holds the drive, or no balance was found"
-        return _number(getattr(at, curve)[LOADS.index(part)], why)
+        place, along = LOADS.index(part), getattr(at, curve)
+        why = along.refused.get(place, "friction holds the drive, or no balance was found")
+        return _number(along.values[place], why)
 
     return read
 

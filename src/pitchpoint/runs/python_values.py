@@ -126,7 +126,11 @@ def _are_names(value: Any) -> bool:
     return listed and all(map(_is_name, value))
 
 
-def _are_limits(value: Any) -> bool:
+def _are_labels(value: Any) -> bool:
+    return _are_names(value) and all(name.strip() for name in value)
+
+
+def _name_or_names(value: Any) -> bool:
     return _is_name(value) or _are_names(value)
 
 
@@ -153,6 +157,7 @@ def _are_studies(value: Any) -> bool:
 
 _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "analyses": (_are_names, 'a list of names of parts, ["operation", "cycle"],'),
+    "by": (_name_or_names, 'a key or a list of keys, ["operation.torque"],'),
     "changes": (_by_key, "a dictionary of values by key"),
     "folder": (_is_path, "the name of a folder"),
     "friction": (
@@ -165,16 +170,19 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "maximise": (_is_name, 'the name of a result, "mean_efficiency",'),
     "minimise": (_is_name, 'the name of a result, "mean_loss",'),
     "n": (_whole(1), "a whole number from 1 on"),
+    "names": (_are_labels, 'a list of names, none of them empty, ["sets", "wave"],'),
+    "of": (_is_name, 'the name of a figure, "mean_loss",'),
     "only": (_are_names, 'a list of names of variants, ["default"],'),
     "over": (_by_key, "a dictionary of values by key"),
     "overwrite": (_is_flag, "True or False"),
+    "path": (_is_path, "the name of a file"),
     "piece": (_whole(1), "a whole number from 1 on"),
     "scheduler": (_is_name, 'the address of a scheduler, "tcp://host:8786",'),
     "seed": (_whole(0), "a whole number from 0 on"),
     "settings": (_by_key, "a dictionary of values by key"),
     "starts": (_whole(0), "a whole number from 1 on"),
     "studies": (_are_studies, "a dictionary of studies by name"),
-    "subject_to": (_are_limits, 'a limit, "root_safety >= 1.5", or a list of such,'),
+    "subject_to": (_name_or_names, 'a limit, "root_safety >= 1.5", or a list of such,'),
     "tolerances": (_is_tolerance, '"uniform" or "normal"'),
     "variant": (_is_name, "the name of a variant"),
     "vary": (_by_key, "a dictionary of ranges or lists of values by key"),
@@ -182,7 +190,7 @@ _ARGUMENTS: Mapping[str, tuple[Callable[[Any], bool], str]] = {
 }
 """Which values an argument takes, and what they are."""
 
-_NEEDED = ("key",)
+_NEEDED = ("key", "of", "path")
 
 
 def demand_arguments(**given: Any) -> None:

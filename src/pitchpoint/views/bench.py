@@ -328,11 +328,14 @@ def _curves(
         plot.layout(axis, "η [%]"),
         "" if all(np.isfinite(getattr(one, name)).all() for one in bench.drives) else _GAPS,
         tuple(keys),
-        missing="Friction holds every drive.",
+        missing="No drive has an efficiency here.",
     )
 
 
-_GAPS = "A line has a gap where friction holds its drive, or no balance was found."
+_GAPS = (
+    "A line has a gap where friction holds its drive, or where its efficiency could not be computed: the "
+    "remarks say why."
+)
 
 
 def _scatter(bench: Bench, keys: Sequence[plot.Key], name: str, title: str) -> plot.Figure:

@@ -16,9 +16,12 @@ import xarray as xr
 
 from pitchpoint._jax import double_precision
 from pitchpoint.core.kept import base_folder, prepared_folder, read_kept, write_kept
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
 from pitchpoint.published.publication_registry import publication_of
 from pitchpoint.results.chosen_units import UnitsByKind, shown_in, unit_choice
 from pitchpoint.results.store import write_text
+from pitchpoint.runs.python_values import demand_arguments
 from pitchpoint.runs.run import Outcome
 from pitchpoint.views import show
 from pitchpoint.views.figures import Panel, curves
@@ -67,18 +70,23 @@ def write_report(
             default. A study and a sizing have theirs.
 
     Raises:
-        InputError: units that there are not.
+        InputError: no outcomes, study or sizing; units that there are not.
     """
+    demand_arguments(path=path)
     if isinstance(outcomes, xr.Dataset):
         from pitchpoint.views.study_report import render_study
 
         return write_text(Path(path), render_study(outcomes))
-    if not isinstance(outcomes, Mapping):
-        from pitchpoint.views.sizing_report import render_sizing
+    if isinstance(outcomes, Mapping) and outcomes:
+        of_case = cast("Mapping[str, Outcome]", outcomes)
+        return write_text(Path(path), report_page(of_case, designs=designs, units=units))
+    from pitchpoint.sizing.sizing import Sizing
+    from pitchpoint.views.sizing_report import render_sizing
 
+    if isinstance(outcomes, Sizing):
         return write_text(Path(path), render_sizing(outcomes))
-    of_case = cast("Mapping[str, Outcome]", outcomes)
-    return write_text(Path(path), report_page(of_case, designs=designs, units=units))
+    told = "a report is of what `run`, `open_result`, `study` or `size` gives"
+    raise InputError(f"{shown(outcomes)} was given; {told}")
 
 
 _OF_ALL = ("answer", "formulas", "compared", "models", "sources")

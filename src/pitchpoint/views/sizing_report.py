@@ -32,6 +32,13 @@ _FIGURES: Mapping[str, tuple[str, str, str, str, Better]] = {
     "diameter": ("diameter", "mm", "mm", "length", "less"),
     "length": ("length", "mm", "mm", "length", "less"),
     "backlash": ("backlash at the output", "'", "arcmin", "angle", "less"),
+    "stiffness": (
+        "torsional stiffness at the output",
+        "N m/'",
+        "N m/arcmin",
+        "torsional stiffness",
+        "more",
+    ),
     "inertia": ("inertia at the input", "kg cm²", "kg cm2", "moment of inertia", "less"),
     "flank_safety": ("least flank safety", "", "", "dimensionless", "more"),
     "root_safety": ("least root safety", "", "", "dimensionless", "more"),

@@ -17,6 +17,8 @@ from pitchpoint._jax import double_precision
 from pitchpoint.cases.handed_over import write_case_copy
 from pitchpoint.cases.laws import FRICTION
 from pitchpoint.cases.record import CASE
+from pitchpoint.errors import InputError
+from pitchpoint.input.quantities import shown
 from pitchpoint.results.rounding import ROUNDING
 from pitchpoint.results.store import write_text
 from pitchpoint.runs.case import Case
@@ -36,7 +38,13 @@ from pitchpoint.views.designs_page import (
 from pitchpoint.views.many_designs import SHOWN
 from pitchpoint.views.section import Block, Paragraph, SectionTable
 
-__all__ = ["MOST_DRAWN", "render_study", "spread_evenly", "write_study_folder"]
+__all__ = [
+    "MOST_DRAWN",
+    "demand_study_folder",
+    "render_study",
+    "spread_evenly",
+    "write_study_folder",
+]
 
 MOST_DRAWN = 5000
 """Designs that a page draws, beside those on the fronts."""
@@ -63,6 +71,9 @@ _BETTER: Mapping[str, Better] = {
 
 _AIMS = 6
 """Figures of which each two have their front among all designs worked out."""
+
+_MOST_OF_FRONT = 300
+"""Designs that are drawn of a front."""
 
 _AXES = 8
 """Axes that are shown before somebody chooses."""
@@ -187,6 +198,29 @@ def render_study(study: xr.Dataset, *, case_file: Path | None = None) -> str:
     return render_designs(_Summed(_Designs(study), case_file).page)
 
 
+_HEAD = "The case of a study: its designs are this case with some keys set."
+"""First line of the case in a folder of a study, which tells it from a case that somebody wrote."""
+
+
+def demand_study_folder(folder: Path, case: str) -> None:
+    """InputError for a folder whose case file is that of the study itself, or not one that a study wrote.
+
+    Args:
+        folder: of the pieces of the study.
+        case: file or name of the case that is studied.
+    """
+    path = folder / CASE
+    if not path.is_file():
+        return
+    with path.open("rb") as file:
+        written = file.read(len(_HEAD) + 2) == f"# {_HEAD}".encode()
+    if not written or (Path(case).is_file() and path.samefile(case)):
+        raise InputError(
+            f"{shown(str(folder))} holds a {CASE} that the study would replace; give a folder without one",
+            key="folder",
+        )
+
+
 @double_precision()
 def write_study_folder(study: xr.Dataset, case: Case, folder: Path) -> None:
     """Write the page of a study into its folder, and the case that its designs are changes of.
@@ -204,7 +238,7 @@ def write_study_folder(study: xr.Dataset, case: Case, folder: Path) -> None:
         variant, _ = with_tolerances(variant, tolerances)
     document = variant.document()
     tree = {key: table for key, table in document.tree.items() if key != "study"}
-    write_case_copy(replace(document, tree=tree), folder)
+    write_case_copy(replace(document, tree=tree), folder, head=_HEAD)
     write_text(folder / "report.html", render_study(study, case_file=folder / CASE))
 
 
@@ -273,14 +307,22 @@ class _Summed:
     def even(self) -> Int[np.ndarray, " _"]:
         """Numbers of the designs that stand for all that have figures."""
         numbers = np.flatnonzero(self.with_figures)
-        laws = len(self.designs.laws)
-        columns = len(self.keys) * 3 + len(self.designs.figures) * laws
-        most = min(MOST_DRAWN, MOST_NUMBERS // columns)
-        return np.asarray(numbers[spread_evenly(len(numbers), most)])
+        return np.asarray(numbers[spread_evenly(len(numbers), self.most_even)])
+
+    @cached_property
+    def most(self) -> int:
+        """Designs that a page has room for."""
+        columns = len(self.keys) * 3 + len(self.designs.figures) * len(self.designs.laws)
+        return MOST_NUMBERS // columns
+
+    @property
+    def most_even(self) -> int:
+        """Designs of the even choice."""
+        return min(MOST_DRAWN, self.most // 2)
 
     @cached_property
     def fronts(self) -> dict[tuple[str, str, int], Int[np.ndarray, " _"]]:
-        """Numbers of the designs on the front of each two of the main figures, by law."""
+        """Numbers of the designs on the front of each two of the main figures by law, from end to end."""
         few = self.main[:_AIMS]
         costs: dict[tuple[str, str, int], tuple[np.ndarray, np.ndarray]] = {}
         for block in self.designs.blocks():
@@ -294,7 +336,7 @@ class _Summed:
                     on = non_dominated(every)
                     numbers = np.concatenate([before[0], block[there]])
                     costs[*pair, law] = numbers[on], every[on]
-        return {key: numbers for key, (numbers, _) in costs.items()}
+        return {key: numbers[np.argsort(every[:, 0])] for key, (numbers, every) in costs.items()}
 
     def _cost(self, name: str, law: int, block: Int[np.ndarray, " _"]) -> np.ndarray:
         values = self.designs.read(name, law if self._laws_of(name) > 1 else 0, block)
@@ -302,9 +344,25 @@ class _Summed:
 
     @cached_property
     def drawn(self) -> Int[np.ndarray, " _"]:
-        """Numbers of the designs that are drawn: an even choice, and what none of it may leave out."""
+        """Numbers of the designs that are drawn: an even choice, the best ones, and fronts."""
         ends = [number for span in self.spans.values() for number in span["ends"].values()]
-        return np.unique(np.concatenate([self.even, ends, *self.fronts.values()]).astype(int))
+        return np.unique(np.concatenate([self.even, ends, *self.fronts_drawn.values()]).astype(int))
+
+    @cached_property
+    def most_of_front(self) -> int:
+        """Designs that are drawn of a front, so that all fronts have no more than the even choice leaves."""
+        left = (self.most - self.most_even) // max(1, len(self.fronts))
+        return min(_MOST_OF_FRONT, max(2, left))
+
+    @cached_property
+    def fronts_drawn(self) -> dict[tuple[str, str, int], Int[np.ndarray, " _"]]:
+        """Of each front the designs that are drawn, its ends among them."""
+        return {key: self._thinned(numbers) for key, numbers in self.fronts.items()}
+
+    def _thinned(self, front: Int[np.ndarray, " _"]) -> Int[np.ndarray, " _"]:
+        if len(front) <= self.most_of_front:
+            return front
+        return np.asarray(front[np.linspace(0, len(front) - 1, self.most_of_front).astype(int)])
 
     @cached_property
     def aims(self) -> tuple[str, str]:
@@ -506,16 +564,18 @@ class _Summed:
         words = "The front has the designs that no other one beats in both results"
         if len(self.drawn) == int(self.with_figures.sum()) or len(few) < 2:
             return f"{words}."
+        words += f": of each two of {', '.join(few)} among all designs, else among those drawn."
+        most = self.most_of_front
+        if max(map(len, self.fronts.values())) <= most:
+            return words
         return (
-            f"{words}: of each two of {', '.join(few)} among all designs, else among those drawn."
+            f"{words} Of a front with more than {most} designs, {most} are drawn, evenly from end to end; "
+            "designs next to it may then stand on it."
         )
 
     def _front(self) -> SectionTable:
         """The front that is shown first, under the first law."""
-        numbers = self.fronts.get((*self.aims, 0), np.zeros(0, int))
-        order = (
-            numbers[np.argsort(self._cost(self.aims[0], 0, numbers))] if numbers.size else numbers
-        )
+        order = self.fronts.get((*self.aims, 0), np.zeros(0, int))
         few = order[:: max(1, -(-len(order) // _ON_FRONT))]
         names = [*self.aims, *self.keys]
         rows = [[str(number), *(self._cell(name, number) for name in names)] for number in few]

@@ -28,7 +28,7 @@
   const axes = () => boxes.filter((box) => box.checked).map((box) => box.value);
   const better = (axis) => place(`${axis}-better`).value;
   const brief = (value, digits = 5) => (value === null ? "–" : minus(Number(value.toPrecision(digits))));
-  const written = (column, value, digits) => (column.levels.length && value !== null ? column.levels[value] : brief(value, digits));
+  const written = (column, value, digits) => (column.levels.length && value !== null ? column.levels[Math.max(0, Math.min(value, column.levels.length - 1))] : brief(value, digits));
   const titled = ({ words, unit }) => (unit ? `${words} [${unit}]` : words);
   const breaking = (column) => titled(column).replace(/[._]/g, "$&\u200b");
   const colourOf = (name) => getComputedStyle(document.body).getPropertyValue(name).trim();
