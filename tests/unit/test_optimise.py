@@ -323,7 +323,7 @@ def test_a_table_of_a_case_is_the_same_task(
     assert run_command(monkeypatch, "optimise", str(path)) == 0
     screen = capsys.readouterr().out.splitlines()
     assert len(screen) <= 20 and all(len(line) <= 80 or "/" in line for line in screen)
-    assert screen[0].startswith("Least mean power loss of Twins: ")
+    assert screen[0].startswith("Least mean power loss: ")
     first = (tmp_path / "best" / "case.toml").read_text()
     assert "[optimise]" not in first
     given = ("optimise", str(path), "--overwrite", "--json", "--subject", "contact_ratio>=1.5")
@@ -383,7 +383,7 @@ def test_earlier_results_stand_until_a_search_has_a_design(tmp_path: Any, ends: 
         pp.optimise(PAIR, vary, **named)
         assert {path.name for path in tmp_path.iterdir()} == {*earlier}
         assert len((tmp_path / "designs.csv").read_text().splitlines()) == 3
-        assert pp.Case(tmp_path / "case.toml")["title"] == "Twins"
+        assert pp.Case(tmp_path / "case.toml")["title"] == "Twins, least mean power loss"
 
 
 def test_a_design_does_not_take_the_place_of_its_case(tmp_path: Any) -> None:

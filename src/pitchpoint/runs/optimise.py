@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -281,7 +281,9 @@ def _solved(
         ):  # no case file holds a law of one's own, least of all that of another design
             (folder / CASE).unlink(missing_ok=True)
         else:
-            write_case_copy(task.base.computed.document(**changes), folder)
+            document = task.base.computed.document(**changes)
+            title = _title_of_best(task, document.tree)
+            write_case_copy(replace(document, tree={**document.tree, "title": title}), folder)
         task.file.path.replace(folder / DESIGNS_FILE)
     return _optimum(
         task,
@@ -473,6 +475,13 @@ def _ran(
             f"{expected}, or misses a limit; nothing is returned"
         )
     return best, (*outcome.manifest["implausible"], *outcome.manifest["briefs"])
+
+
+def _title_of_best(task: OptimiserTask, tree: Mapping[str, Any]) -> str:
+    """By the name of the file where there is one: the title of a sized design has the figures of before."""
+    name = str(tree.get("title", "")) if task.base.folder is None else Path(task.case.name).stem
+    best = f"{'largest' if task.largest else 'least'} {task.aim.quantity.long_name}"
+    return f"{name}, {best}" if name else best.capitalize()
 
 
 def _optimum(

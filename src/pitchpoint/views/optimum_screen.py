@@ -86,9 +86,7 @@ def _answer(optimum: Optimum) -> str:
     which = "Largest" if optimum.largest else "Least"
     aim = optimum.aim
     start = float(optimum.start[aim.name])
-    told = (
-        f"{which} {aim.quantity.long_name} of {shorten(optimum.title)}: {aim.told(optimum.value)}"
-    )
+    told = f"{which} {aim.quantity.long_name}: {aim.told(optimum.value)}"
     if start != start:
         return told
     change = f" ({100.0 * (optimum.value / start - 1.0):+.3g} %)" if start else ""
