@@ -6,7 +6,6 @@ from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
-from unittest.mock import Mock
 
 import numpy as np
 import plotly.graph_objects as go
@@ -17,7 +16,7 @@ from xarray.plot.utils import label_from_attrs
 
 import pitchpoint as pp
 from pitchpoint._jax import jax, jnp
-from pitchpoint.notebook.differences import OTHER_FORM, STILL, CaseNumber, continuous, derivative_of
+from pitchpoint.notebook.differences import OTHER_FORM, STILL, derivative_of
 from pitchpoint.results.labelled import in_units
 from pitchpoint.results.store import dataset
 from pitchpoint.runs.run import Progress, with_user_law
@@ -501,26 +500,6 @@ def test_units_and_value_stand_beside_the_gradients(result: pp.Result) -> None:
         result.gradients("mean_los")
 
 
-@pytest.mark.parametrize(
-    ("call", "words"),
-    [
-        (lambda: pp.gradients(PAIR, of=5), "of: 5 was given where the name of a figure"),
-        (lambda: pp.gradients(PAIR, of=["mean_loss"]), "of: the list "),
-        (lambda: pp.gradients(PAIR, by=5), "by: 5 was given where a key or a list of keys"),
-        (lambda: pp.gradients(PAIR, law=3), "law: 3 was given where the name of a friction law"),
-        (lambda: pp.write_report(5, "x.html"), "5 was given; a report is of what `run`"),
-        (lambda: pp.write_report({}, "x.html"), "the table {  } was given; a report is of what"),
-        (lambda: pp.write_report({}, 5), "path: 5 was given where the name of a file"),
-    ],
-)
-def test_arguments_of_another_kind_are_refused_in_a_sentence(
-    call: Callable[[], Any], words: str
-) -> None:
-    with pytest.raises(pp.InputError) as caught:
-        call()
-    assert str(caught.value).startswith(words)
-
-
 def test_what_is_not_known_of_a_material_spoils_no_derivative(result: pp.Result) -> None:
     """Nor does a key that moves nothing else have one."""
     steel = {"young": 206e9, "poisson": 0.3, "density": 7850.0}  # without hardness
@@ -545,34 +524,6 @@ def test_safeties_have_derivatives_by_differences_of_designs() -> None:
         slopes = table.derivative * table.value / table.attrs["value"]
         np.testing.assert_allclose(slopes, -power, rtol=1e-6)
     assert {*pp.gradients(rated, "largest_root_stress", [WARM]).attrs["without"]} == {WARM}
-
-
-@pytest.mark.whole
-@pytest.mark.parametrize(
-    ("key", "value", "power"),
-    [("lubricant.pressure_viscosity", "2e-8 1/Pa", 0.6), ("roughness.ra", "0.08 um", -1.0)],
-)
-def test_numbers_that_are_small_in_si_have_derivatives(key: str, value: str, power: float) -> None:
-    """By powers: films of Dowson and Higginson go as the coefficient to 0.6, lambda as 1 over Ra of both."""
-    table = pp.gradients(PAIR.set({key: value}), "min_lambda_ratio", [key])
-    slopes = table.derivative * table.value / table.attrs["value"]
-    assert slopes.sum() == pytest.approx(power, rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "step"),
-    [
-        ("lubricant.pressure_viscosity", 2e-8, 2e-12),
-        ("roughness.ra.1", 0.0, 1e-10),
-        ("gears.profile_shift.1", -1e-17, 1e-4),
-        ("gears.helix_angle", 0.0, 1e-4 * math.pi / 180.0),
-        ("operation.temperature", 300.0, 0.03),
-    ],
-)
-def test_a_step_is_relative_and_of_the_unit_for_zero(key: str, value: float, step: float) -> None:
-    quantity = continuous(key)
-    assert quantity is not None
-    assert CaseNumber(key, value, quantity, Mock()).step == pytest.approx(step, rel=1e-12)
 
 
 @pytest.mark.whole

@@ -433,31 +433,6 @@ def test_the_command_computes_the_study_of_python(
 
 
 @pytest.mark.usefixtures("quick")
-def test_a_study_replaces_no_case_that_somebody_wrote(
-    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    table = f'[study]\nfolder = "."\nover.{TORQUE} = ["5 N m", "6 N m"]\n'
-    text = f"# mine\n{Path(case).read_text('utf-8')}\n{table}"
-    user = tmp_path / "e" / "case.toml"
-    user.parent.mkdir()
-    user.write_text(text, "utf-8")
-    for given in (
-        (str(user), "-o", str(user.parent)),
-        (str(user),),
-        (case, *DRAWN, "-o", str(user.parent)),
-    ):
-        assert _command(*given) == 2
-        assert "holds a case.toml that the study would replace" in capsys.readouterr().err
-        assert [path.name for path in user.parent.iterdir()] == ["case.toml"]
-        assert user.read_text("utf-8") == text
-    for _ in range(2):  # what a study wrote, a study replaces
-        assert _command(str(user), "-o", str(tmp_path / "out")) == 0
-    written = tmp_path / "out" / "case.toml"
-    assert _command(str(written), *DRAWN, "-o", str(tmp_path / "out")) == 2
-    capsys.readouterr()
-
-
-@pytest.mark.usefixtures("quick")
 def test_values_of_a_grid_are_ranges_and_lists(
     case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
