@@ -20,6 +20,7 @@ from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
 from pitchpoint.sizing.task_table import SIZED_FAMILIES, TASK_TABLE, Task, read_task, task_template
+from pitchpoint.views.sizing_screen import doubts_of_sizing
 
 TASK = {"torque": "60 N m", "ratio": 60, "speed": "30 rpm", "life": "5000 h"}
 
@@ -214,6 +215,31 @@ def test_the_best_of_a_front_are_those_with_the_least_and_the_one_that_lacks_lit
     task = Task.read(**TASK, aims="mass, loss")
     best = Sizing(task, designs, tuple(designs), {"3K": 3}, {}).best
     assert best == {"mass": "light", "loss": "lossless", "balanced": "middle"}
+
+
+@pytest.mark.parametrize(("temperature", "beyond"), [("60 degC", True), ("20 degC", False)])
+def test_losses_of_strain_wave_gears_beyond_their_set_are_told(temperature, beyond):
+    """The data of the set end at 40 degC, and a sizing begins with 60 degC."""
+    numbers = dict.fromkeys(OF_DESIGN, 1.0)
+    design = SizedDrive(name="a", family="strain wave", tree={}, **numbers)
+    task = Task.read(**TASK, temperature=temperature)
+    every = " ".join(doubts_of_sizing(Sizing(task, {"a": design}, ("a",), {}, {})))
+    told = "ends at -10 °C and 40 °C: at 60 °C it is an extrapolation."
+    assert (told in every) == beyond == ("extrapolation" in every)
+
+
+OF_DESIGN = (
+    "ratio",
+    "mass",
+    "loss",
+    "diameter",
+    "length",
+    "backlash",
+    "stiffness",
+    "inertia",
+    "flank_safety",
+    "root_safety",
+)
 
 
 def test_losses_of_helical_teeth_are_the_mean_over_lines_that_fill_the_path():
