@@ -10,6 +10,7 @@ import xarray as xr
 
 from pitchpoint.results.store import without_nan, write_text
 from pitchpoint.runs.sensitivity import FIGURES, indices_of_study
+from pitchpoint.views import show
 
 __all__ = ["as_plain", "figures_of_many", "indices_of_many", "write_rows"]
 
@@ -31,6 +32,7 @@ SHOWN = (
 """Figures whose ends over all designs are shown, where they have values."""
 
 _REASONS = 3
+"""Most reasons, and most warnings, that are told."""
 
 
 def _spans(found: xr.Dataset) -> Iterator[tuple[str, str, Sequence[float]]]:
@@ -72,7 +74,15 @@ def figures_of_many(found: xr.Dataset, folder: Path) -> tuple[list[str], list[di
     if len(reasons) > _REASONS:
         told.append(f"  and {len(reasons) - _REASONS} more reasons, in `reason` of the files")
     files = [f"every design: {folder}", f"report: {folder / 'report.html'}"]
-    return [*told, *_remarks(found), *files], rows
+    return [*told, *_doubts(found), *_remarks(found), *files], rows
+
+
+def _doubts(found: xr.Dataset) -> list[str]:
+    """The first warnings that its page has, and how many more there are."""
+    every = [str(text) for text in json.loads(str(found.attrs.get("warnings", "[]")))]
+    told = [f"Doubtful: {show.pretty(text)}" for text in every[:_REASONS]]
+    left = len(every) - len(told)
+    return [*told, *[f"  and {left} more warnings, in the report"] * (left > 0)]
 
 
 def _remarks(found: xr.Dataset) -> list[str]:
