@@ -379,3 +379,17 @@ def test_profile_shifts_that_are_tried_keep_the_limits_of_teeth():
         assert sliding.max() <= 3.0 and float(pair.transverse_contact_ratio) >= 1.2
         assert min(float(gear.tip_thickness / pair.module) for gear in pair.gears) >= 0.2
     assert [0.36, -0.36] not in shifts  # the pinion would slide by more than four
+
+
+@pytest.mark.parametrize("held", ["report.html", "3_stages_01.toml"])
+def test_a_folder_that_holds_a_sizing_is_refused_before_the_search(
+    held, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("pitchpoint.sizing.sizing.sized_for", lambda task: pytest.fail("searched"))
+    (tmp_path / held).write_text("", "utf-8")
+    options = [word for key, value in TASK.items() for word in (f"--{key}", str(value))]
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "size", *options, "-o", str(tmp_path)])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.endswith(f"{held}: is there already; name another folder\n")
