@@ -116,8 +116,11 @@ def indices_of_many(found: xr.Dataset) -> tuple[str, list[dict[str, str]]]:
             **({"law": law} if several else {}),
             "key": key,
             **{
-                title: _with_bounds(indices.sel(figure=figure, law=law, key=key), name)
-                for title, name in (("alone", "first_order"), ("with others", "total_order"))
+                title: words
+                for head, name in (("alone", "first_order"), ("with others", "total_order"))
+                for title, words in _bounded(
+                    indices.sel(figure=figure, law=law, key=key), head, name
+                ).items()
             },
         }
         for figure in indices["figure"].values.tolist()
@@ -126,12 +129,15 @@ def indices_of_many(found: xr.Dataset) -> tuple[str, list[dict[str, str]]]:
     ]
     used, asked = indices.attrs["designs"], indices.attrs["asked"]
     told = f"Sobol' indices, parts of the variance, from {used} of {asked} designs of each sample"
-    return f"{told}; in brackets 95 of 100 resampled ones", rows
+    return f"{told}; 95 of 100 resampled ones lie in the range beside", rows
 
 
-def _with_bounds(index: xr.Dataset, name: str) -> str:
+def _bounded(index: xr.Dataset, head: str, name: str) -> dict[str, str]:
+    """An index and its bounds, each a cell that no screen breaks."""
     value, low, high = (float(index[f"{name}{end}"]) for end in ("", "_low", "_high"))
-    return "does not vary" if np.isnan(value) else f"{value:.2f} ({low:.2f}, {high:.2f})"
+    if np.isnan(value):
+        return {head: "does not vary", f"{head}, 95 %": ""}
+    return {head: f"{value:.2f}", f"{head}, 95 %": f"{low:.2f} to {high:.2f}"}
 
 
 def write_rows(found: xr.Dataset, path: Path) -> None:
