@@ -1354,7 +1354,7 @@ def size(
     and life are needed, as options or in a file: pitchpoint new size.
     """
     from pitchpoint.results.store import write_text
-    from pitchpoint.sizing.sizing import sized_for
+    from pitchpoint.sizing.sizing import Sizing, sized_for
     from pitchpoint.sizing.task_table import Task, read_task
     from pitchpoint.views.sizing_report import render_sizing
     from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
@@ -1380,7 +1380,10 @@ def size(
         "lubricant": lubricant,
         "temperature": temperature,
     }
-    found = sized_for(Task.read(**options) if task is None else read_task(task, **options))
+    asked = Task.read(**options) if task is None else read_task(task, **options)
+    if output is not None:
+        Sizing.demand_unused(output)
+    found = sized_for(asked)
     if output is not None:
         found.write(output)
         write_text(output / "report.html", render_sizing(found, folder=output))

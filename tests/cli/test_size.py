@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from documentation import block
 from pages import unpacked
-from pitchpoint.sizing.table import Task
 
 from pitchpoint import cli
 from pitchpoint._jax import double_precision
@@ -21,6 +20,7 @@ from pitchpoint.errors import InputError
 from pitchpoint.runs.run import load_case, run_case
 from pitchpoint.sizing.combining import drives_of, exactly_loaded
 from pitchpoint.sizing.sizing import OF_EACH, SizedDrive, Sizing, size
+from pitchpoint.sizing.task_table import Task
 from pitchpoint.views.sizing_report import render_sizing
 from pitchpoint.views.sizing_screen import sizing_as_json, sizing_screen
 

@@ -20,6 +20,7 @@ from pitchpoint.sizing.sizing import SizedDrive, Sizing, size
 from pitchpoint.sizing.stage_forms import tooth_loss
 from pitchpoint.sizing.strain_wave import strain_wave_sizes, why_no_size
 from pitchpoint.sizing.task_table import SIZED_FAMILIES, TASK_TABLE, Task, read_task, task_template
+from pitchpoint.views.sizing_screen import doubts_of_sizing
 
 TASK = {"torque": "60 N m", "ratio": 60, "speed": "30 rpm", "life": "5000 h"}
 
@@ -216,6 +217,31 @@ def test_the_best_of_a_front_are_those_with_the_least_and_the_one_that_lacks_lit
     assert best == {"mass": "light", "loss": "lossless", "balanced": "middle"}
 
 
+@pytest.mark.parametrize(("temperature", "beyond"), [("60 degC", True), ("20 degC", False)])
+def test_losses_of_strain_wave_gears_beyond_their_set_are_told(temperature, beyond):
+    """The data of the set end at 40 degC, and a sizing begins with 60 degC."""
+    numbers = dict.fromkeys(OF_DESIGN, 1.0)
+    design = SizedDrive(name="a", family="strain wave", tree={}, **numbers)
+    task = Task.read(**TASK, temperature=temperature)
+    every = " ".join(doubts_of_sizing(Sizing(task, {"a": design}, ("a",), {}, {})))
+    told = "ends at -10 °C and 40 °C: at 60 °C it is an extrapolation."
+    assert (told in every) == beyond == ("extrapolation" in every)
+
+
+OF_DESIGN = (
+    "ratio",
+    "mass",
+    "loss",
+    "diameter",
+    "length",
+    "backlash",
+    "stiffness",
+    "inertia",
+    "flank_safety",
+    "root_safety",
+)
+
+
 def test_losses_of_helical_teeth_are_the_mean_over_lines_that_fill_the_path():
     teeth, friction = np.array([23.0, 61.0]), 0.04
     parts = np.array([0.9, 0.6])  # beyond the pitch point, and before it, in base pitches
@@ -353,3 +379,17 @@ def test_profile_shifts_that_are_tried_keep_the_limits_of_teeth():
         assert sliding.max() <= 3.0 and float(pair.transverse_contact_ratio) >= 1.2
         assert min(float(gear.tip_thickness / pair.module) for gear in pair.gears) >= 0.2
     assert [0.36, -0.36] not in shifts  # the pinion would slide by more than four
+
+
+@pytest.mark.parametrize("held", ["report.html", "3_stages_01.toml"])
+def test_a_folder_that_holds_a_sizing_is_refused_before_the_search(
+    held, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("pitchpoint.sizing.sizing.sized_for", lambda task: pytest.fail("searched"))
+    (tmp_path / held).write_text("", "utf-8")
+    options = [word for key, value in TASK.items() for word in (f"--{key}", str(value))]
+    monkeypatch.setattr(sys, "argv", ["pitchpoint", "size", *options, "-o", str(tmp_path)])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.endswith(f"{held}: is there already; name another folder\n")

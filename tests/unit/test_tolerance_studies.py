@@ -289,6 +289,13 @@ def test_the_screen_has_the_percentiles_that_it_names_and_what_does_not_follow()
         "every design: x",
         "report: x/report.html",
     ]
+    doubtful = found.assign_attrs(warnings='["At 60 degC a.", "b.", "c.", "d.", "e."]')
+    assert figures_of_many(doubtful, Path("x"))[0][1:5] == [
+        "Doubtful: At 60 °C a.",
+        "Doubtful: b.",
+        "Doubtful: c.",
+        "  and 2 more warnings, in the report",
+    ]
     ends = figures_of_many(found.assign_attrs(tolerances=""), Path("x"))[1]
     assert ends == []  # without tolerances the backlash is no main figure
 

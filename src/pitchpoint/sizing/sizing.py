@@ -161,6 +161,13 @@ class Sizing:
             coords={"design": names},
         )
 
+    @staticmethod
+    def demand_unused(folder: Path) -> None:
+        """InputError for a folder that holds a report or designs of a sizing, before any is searched."""
+        for path in (folder / "report.html", *sorted(folder.glob("*_[0-9][0-9].toml"))):
+            if path.exists():
+                raise InputError("is there already; name another folder", file=str(path))
+
     def write(self, folder: Path | str) -> list[Path]:
         """Write each design of the front as a case file, all of them or none.
 

@@ -10,6 +10,7 @@ from pitchpoint.sizing.stage_forms import running_tables
 from pitchpoint.sizing.task_table import Task
 
 __all__ = [
+    "LOSSES_OF_STRAIN_WAVES",
     "RATIOS",
     "SIZES",
     "StrainWaveSize",
@@ -54,6 +55,9 @@ WIDTH = 1.0 / 6.0
 """Face width over pitch diameter."""
 
 KEPT = 3
+
+LOSSES_OF_STRAIN_WAVES = "strain_wave_component"
+"""Set of losses of their cases."""
 
 TURN = units.parse("1 rpm", "rotational speed")
 """A turn a minute [rad/s]."""
@@ -202,7 +206,7 @@ def strain_wave_case(task: Task, size: StrainWaveSize, speed: float) -> Tree:
     """
     return {
         "gears": size.gears,
-        "losses": {"set": "strain_wave_component"},
+        "losses": {"set": LOSSES_OF_STRAIN_WAVES},
         **running_tables(task, task.torque, speed),
         "models": {"friction": {"name": "constant", "coefficient": 0.08}},
     }

@@ -10,6 +10,7 @@ import xarray as xr
 
 from pitchpoint.results.store import without_nan, write_text
 from pitchpoint.runs.sensitivity import FIGURES, indices_of_study
+from pitchpoint.views import show
 
 __all__ = ["as_plain", "figures_of_many", "indices_of_many", "write_rows"]
 
@@ -31,6 +32,7 @@ SHOWN = (
 """Figures whose ends over all designs are shown, where they have values."""
 
 _REASONS = 3
+"""Most reasons, and most warnings, that are told."""
 
 
 def _spans(found: xr.Dataset) -> Iterator[tuple[str, str, Sequence[float]]]:
@@ -72,7 +74,15 @@ def figures_of_many(found: xr.Dataset, folder: Path) -> tuple[list[str], list[di
     if len(reasons) > _REASONS:
         told.append(f"  and {len(reasons) - _REASONS} more reasons, in `reason` of the files")
     files = [f"every design: {folder}", f"report: {folder / 'report.html'}"]
-    return [*told, *_remarks(found), *files], rows
+    return [*told, *_doubts(found), *_remarks(found), *files], rows
+
+
+def _doubts(found: xr.Dataset) -> list[str]:
+    """The first warnings that its page has, and how many more there are."""
+    every = [str(text) for text in json.loads(str(found.attrs.get("warnings", "[]")))]
+    told = [f"Doubtful: {show.pretty(text)}" for text in every[:_REASONS]]
+    left = len(every) - len(told)
+    return [*told, *[f"  and {left} more warnings, in the report"] * (left > 0)]
 
 
 def _remarks(found: xr.Dataset) -> list[str]:
@@ -106,8 +116,11 @@ def indices_of_many(found: xr.Dataset) -> tuple[str, list[dict[str, str]]]:
             **({"law": law} if several else {}),
             "key": key,
             **{
-                title: _with_bounds(indices.sel(figure=figure, law=law, key=key), name)
-                for title, name in (("alone", "first_order"), ("with others", "total_order"))
+                title: words
+                for head, name in (("alone", "first_order"), ("with others", "total_order"))
+                for title, words in _bounded(
+                    indices.sel(figure=figure, law=law, key=key), head, name
+                ).items()
             },
         }
         for figure in indices["figure"].values.tolist()
@@ -116,12 +129,15 @@ def indices_of_many(found: xr.Dataset) -> tuple[str, list[dict[str, str]]]:
     ]
     used, asked = indices.attrs["designs"], indices.attrs["asked"]
     told = f"Sobol' indices, parts of the variance, from {used} of {asked} designs of each sample"
-    return f"{told}; in brackets 95 of 100 resampled ones", rows
+    return f"{told}; 95 of 100 resampled ones lie in the range beside", rows
 
 
-def _with_bounds(index: xr.Dataset, name: str) -> str:
+def _bounded(index: xr.Dataset, head: str, name: str) -> dict[str, str]:
+    """An index and its bounds, each a cell that no screen breaks."""
     value, low, high = (float(index[f"{name}{end}"]) for end in ("", "_low", "_high"))
-    return "does not vary" if np.isnan(value) else f"{value:.2f} ({low:.2f}, {high:.2f})"
+    if np.isnan(value):
+        return {head: "does not vary", f"{head}, 95 %": ""}
+    return {head: f"{value:.2f}", f"{head}, 95 %": f"{low:.2f} to {high:.2f}"}
 
 
 def write_rows(found: xr.Dataset, path: Path) -> None:

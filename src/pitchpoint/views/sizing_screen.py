@@ -6,10 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from pitchpoint import units
+from pitchpoint.cases.loss_sets import loss_sets
 from pitchpoint.core.doubts import GUESSED, in_percent
+from pitchpoint.input.kinds import TEMPERATURE
 from pitchpoint.registry import enumerated
 from pitchpoint.sizing.sizing import SizedDrive, Sizing, families_by_reason
+from pitchpoint.sizing.strain_wave import LOSSES_OF_STRAIN_WAVES
 from pitchpoint.sizing.task_table import Task
+from pitchpoint.views import show
 from pitchpoint.views.columns import lines_of
 from pitchpoint.views.first_screen import Line, wrapped
 
@@ -38,8 +42,8 @@ _OF_TEETH = (
     "thinner than the roughness may more than double them."
 )
 _OF_STRAIN_WAVES = (
-    "Strain wave gears go by a maker's rating, with bearing and grease in their loss; they count as free of "
-    "backlash, and their teeth are not rated."
+    "Strain wave gears go by a maker's rating, count as free of backlash, and their teeth are not rated; "
+    "bearing and grease are in their loss"
 )
 
 
@@ -179,7 +183,12 @@ def doubts_of_sizing(sizing: Sizing) -> Iterator[str]:
     of_teeth = f"{_OF_TEETH} " if families - {"strain wave"} else ""
     yield f"{of_teeth}{_LEFT_OUT}; {on_factors}"
     if families & {"strain wave", "planetary and strain wave"}:
-        yield _OF_STRAIN_WAVES
+        low, high = loss_sets()[LOSSES_OF_STRAIN_WAVES].fitted
+        beyond = (
+            f", which ends at {TEMPERATURE.show(low)} and {TEMPERATURE.show(high)}: at "
+            f"{TEMPERATURE.show(task.temperature)} it is an extrapolation"
+        )
+        yield show.pretty(f"{_OF_STRAIN_WAVES}{'' if low <= task.temperature <= high else beyond}.")
 
 
 def _foot(sizing: Sizing, written: Path | None) -> Iterator[str]:
