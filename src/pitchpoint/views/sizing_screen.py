@@ -36,15 +36,12 @@ BEST_WORDS = {
 }
 """What a design is the best by, in words."""
 
-_LEFT_OUT = "Shafts, bearings, seals, churned oil, housings, carriers and pins are in no figure"
+_LEFT_OUT = "Shafts, bearings, seals, churned oil, housing, carriers and pins are in no figure"
 _OF_TEETH = (
-    f"Losses are those of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so, and films "
+    f"Losses are of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so, and films "
     "thinner than the roughness may more than double them."
 )
-_OF_STRAIN_WAVES = (
-    "Strain wave gears go by a maker's rating, count as free of backlash, and their teeth are not rated; "
-    "bearing and grease are in their loss"
-)
+_OF_STRAIN_WAVES = "Strain wave gears: a maker's rating, no backlash, teeth not rated; loss with bearing and grease"
 
 
 MOST_LINES = 20
@@ -100,12 +97,12 @@ def task_words(task: Task) -> str:
 
 
 def counted_words(sizing: Sizing) -> str:
-    """How many designs of which families do it."""
-    families = {design.family for design in sizing.designs.values()}
-    told = enumerated(name for name in sizing.task.families if name in families)
+    """How many designs of how many families do it."""
+    families = len({design.family for design in sizing.designs.values()})
     return (
         f"{len(sizing.designs)} designs do it, {len(sizing.front)} of them beaten by none in "
-        f"{enumerated(sizing.task.aims)}; of {sum(sizing.tried.values())} sizes rated. Families: {told}."
+        f"{enumerated(sizing.task.aims)}; of {families} famil{'y' if families == 1 else 'ies'}, "
+        f"{sum(sizing.tried.values())} sizes rated."
     )
 
 
@@ -185,7 +182,7 @@ def doubts_of_sizing(sizing: Sizing) -> Iterator[str]:
     if families & {"strain wave", "planetary and strain wave"}:
         low, high = loss_sets()[LOSSES_OF_STRAIN_WAVES].fitted
         beyond = (
-            f", which ends at {TEMPERATURE.show(low)} and {TEMPERATURE.show(high)}: at "
+            f", fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}: at "
             f"{TEMPERATURE.show(task.temperature)} it is an extrapolation"
         )
         yield show.pretty(f"{_OF_STRAIN_WAVES}{'' if low <= task.temperature <= high else beyond}.")
