@@ -224,8 +224,8 @@ def test_losses_of_strain_wave_gears_beyond_their_set_are_told(temperature, beyo
     design = SizedDrive(name="a", family="strain wave", tree={}, **numbers)
     task = Task.read(**TASK, temperature=temperature)
     every = " ".join(doubts_of_sizing(Sizing(task, {"a": design}, ("a",), {}, {})))
-    told = "fitted from -10 °C to 40 °C: at 60 °C it is an extrapolation."
-    assert (told in every) == beyond == ("extrapolation" in every)
+    told = "fitted from -10 °C to 40 °C: extrapolated to 60 °C."
+    assert (told in every) == beyond == ("extrapolated" in every)
 
 
 OF_DESIGN = (

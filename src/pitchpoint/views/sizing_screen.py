@@ -41,7 +41,10 @@ _OF_TEETH = (
     f"Losses are of teeth by ISO/TR 14179-2; laws differ by {in_percent(GUESSED)} or so, and films "
     "thinner than the roughness may more than double them."
 )
-_OF_STRAIN_WAVES = "Strain wave gears: a maker's rating, no backlash, teeth not rated; loss with bearing and grease"
+_OF_STRAIN_WAVES = (
+    "Strain wave gears: a maker's rating, no backlash, teeth not rated; loss with bearing and "
+    "grease"
+)
 
 
 MOST_LINES = 20
@@ -182,8 +185,8 @@ def doubts_of_sizing(sizing: Sizing) -> Iterator[str]:
     if families & {"strain wave", "planetary and strain wave"}:
         low, high = loss_sets()[LOSSES_OF_STRAIN_WAVES].fitted
         beyond = (
-            f", fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}: at "
-            f"{TEMPERATURE.show(task.temperature)} it is an extrapolation"
+            f", fitted from {TEMPERATURE.show(low)} to {TEMPERATURE.show(high)}: "
+            f"extrapolated to {TEMPERATURE.show(task.temperature)}"
         )
         yield show.pretty(f"{_OF_STRAIN_WAVES}{'' if low <= task.temperature <= high else beyond}.")
 
