@@ -138,6 +138,8 @@ def test_figures_of_a_bench_are_those_of_the_runs(name):
     ):
         there = at_tenth[part]["mean_efficiency"].item()
         assert figures[figure] == pytest.approx(there, rel=1e-9), figure
+    fitted = "Losses of the set end at -10 degC and 40 degC"
+    assert (fitted in drive.remarks) == (name == "strain wave")
 
 
 def test_room_for_gears_is_that_of_their_circles():

@@ -18,7 +18,7 @@ from pitchpoint.analyses.plausibility import unlikely
 from pitchpoint.analyses.summaries import summaries
 from pitchpoint.cases.built_drive import Ready
 from pitchpoint.cases.variant import Variant
-from pitchpoint.core.doubts import doubts_of, ranked_doubts
+from pitchpoint.core.doubts import as_doubt, doubts_of, ranked_doubts
 from pitchpoint.errors import ConvergenceError, InputError, visible
 from pitchpoint.input.quantities import shown
 from pitchpoint.registry import enumerated
@@ -334,12 +334,12 @@ def _number(value: Any, why: str = "friction holds the drive") -> float:
 
 def _benched(name: str, variant: Variant, built: Ready) -> BenchedDrive:
     parts, failed = _computed(variant, PARTS)
-    remarks = [*ranked_doubts([*unlikely(built, parts)])["implausible"]]
+    remarks = _doubtful(built, parts)
     if "torsion" not in parts and "torsion" not in failed:
         yielding = replace(variant, settings={**variant.settings, **YIELDING})
         by_teeth, of_torsion = _computed(yielding, ["torsion"])
         parts, failed = parts | by_teeth, failed | of_torsion
-        remarks += ['its stiffness is that with load_sharing = "from_stiffness"'] * bool(by_teeth)
+        remarks += ['the stiffness is that with load_sharing = "from_stiffness"'] * bool(by_teeth)
     forwards, backwards = _efficiencies(variant, built)
     at_point = _AtPoint(built, parts, failed, forwards, backwards)
     figures: dict[str, float] = {}
@@ -364,6 +364,14 @@ def _benched(name: str, variant: Variant, built: Ready) -> BenchedDrive:
         forwards.values[len(LOADS) :],
         backwards.values[len(LOADS) :],
     )
+
+
+def _doubtful(built: Ready, parts: Mapping[str, xr.Dataset]) -> list[str]:
+    """What cannot be, in whole, and what else the first screen of a run would call doubtful, in brief."""
+    of_point = doubts_of(parts["operation"].attrs) if "operation" in parts else []
+    ranked = ranked_doubts([*unlikely(built, parts), *built.warnings, *of_point])
+    briefs = (as_doubt(text).brief for text in ranked["warnings"])
+    return [*ranked["implausible"], *(brief.rstrip(".") for brief in briefs)]
 
 
 def _demand_reducer(name: str, built: Ready) -> None:
@@ -509,12 +517,12 @@ def _remarks(parts: Mapping[str, xr.Dataset], figures: Mapping[str, float]) -> I
     """What is to be known of figures that are there."""
     if "backlash" in figures and not _by_tolerances(parts):
         none = abs(figures["backlash"]) < NO_PLAY
-        yield "its backlash is nominal" + ": no allowance is given" * none
+        yield "the backlash is nominal" + ": no allowance is given" * none
     running = parts.get("running")
     if running is not None and any(
         "starting_torque" in doubt.about for doubt in doubts_of(running.attrs)
     ):
-        yield "its torques from rest are lower bounds: no breakaway is given"
+        yield "the torques from rest are lower bounds: no breakaway is given"
 
 
 def _gaps(forwards: _Curve, backwards: _Curve) -> Iterator[str]:

@@ -171,7 +171,7 @@ def _remarks(bench: Bench) -> Iterator[str]:
         for remark in drive.remarks:
             groups.setdefault(remark, []).append(drive.name)
     for remark, names in groups.items():
-        yield f"{_all_or_some(names, bench)}: {remark}."
+        yield show.pretty(f"{_all_or_some(names, bench)}: {remark}.")
 
 
 def _all_or_some(names: Sequence[str], bench: Bench) -> str:
