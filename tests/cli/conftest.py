@@ -1,4 +1,4 @@
-"""Commands in the process of the test: one that ends as it likes, and one that must be refused."""
+"""Commands in this process, one that ends as it likes and one that is refused; drives with a map."""
 
 import sys
 from collections.abc import Callable
@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 from called import Told
+from mapped_pair import locking_drive, moving_drive
 
 from pitchpoint import cli
+from pitchpoint.cases.built_drive import Ready
+from pitchpoint.runs.run import Outcome
 
 
 @pytest.fixture
@@ -54,3 +57,13 @@ def refuse(
         return lines[0]
 
     return run
+
+
+@pytest.fixture(scope="module")
+def moving() -> tuple[Ready, Outcome]:
+    return moving_drive()
+
+
+@pytest.fixture(scope="module")
+def locking() -> tuple[Ready, Outcome]:
+    return locking_drive()

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from mapped_pair import MOVING, PAIR, command, moving_drive, variant
+from mapped_pair import MOVING, PAIR, command, variant
 
 import pitchpoint as pp
 from pitchpoint.analyses.analysis_registry import DUTY as DUTY_CYCLE
@@ -25,11 +25,6 @@ from pitchpoint.runs.jobs import chosen_jobs, jobs
 from pitchpoint.runs.run import Outcome, write_results
 from pitchpoint.views.section_registry import DUTY as DUTY_SECTION
 from pitchpoint.views.sections.duty import actuator_points, operating_points
-
-
-@pytest.fixture(scope="module")
-def moving() -> tuple[Ready, Outcome]:
-    return moving_drive()
 
 
 @pytest.fixture(scope="module")

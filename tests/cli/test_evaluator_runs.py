@@ -19,8 +19,6 @@ from mapped_pair import (
     TITLE,
     TOLERANCE,
     command,
-    locking_drive,
-    moving_drive,
     variant,
     whole,
 )
@@ -35,16 +33,6 @@ from pitchpoint.runs.jobs import jobs
 from pitchpoint.runs.run import Outcome, open_outcomes, write_results
 
 SIZING = Path(__file__).parents[2] / "docs" / "guide" / "sizing.md"
-
-
-@pytest.fixture(scope="module")
-def moving() -> tuple[Ready, Outcome]:
-    return moving_drive()
-
-
-@pytest.fixture(scope="module")
-def locking() -> tuple[Ready, Outcome]:
-    return locking_drive()
 
 
 @pytest.fixture(scope="module")

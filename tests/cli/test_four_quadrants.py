@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from mapped_pair import MOVING, PAIR, TOLERANCE, locking_drive, moving_drive, variant, whole
+from mapped_pair import MOVING, PAIR, TOLERANCE, variant, whole
 
 from pitchpoint.analyses import four_quadrants
 from pitchpoint.analyses.analysis import silent
@@ -26,16 +26,6 @@ from pitchpoint.views.section_registry import FOUR_QUADRANTS as FOUR_QUADRANTS_S
 from pitchpoint.views.sections.beside import BESIDE
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-@pytest.fixture(scope="module")
-def moving() -> tuple[Ready, Outcome]:
-    return moving_drive()
-
-
-@pytest.fixture(scope="module")
-def locking() -> tuple[Ready, Outcome]:
-    return locking_drive()
 
 
 def beside_torques_at_rest(outcome: Outcome, running: xr.Dataset) -> Iterator[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import bank
 import numpy as np
 import pytest
-from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, computed, drawn_teeth, shown
+from reported import OUTSIDE, Outcomes, drawn_teeth
 
 from pitchpoint.gears.rack_and_pinion.family import FAMILY as RACK_FAMILY
 from pitchpoint.gears.rack_and_pinion.table import RackAndPinionGears
@@ -17,26 +17,6 @@ from pitchpoint.views.explorer import Reader
 from pitchpoint.views.picture import Picture, PictureBody, picture_of
 from pitchpoint.views.point import period_of
 from pitchpoint.views.report import report_page
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("report")
-
-
-@pytest.fixture(scope="module")
-def published(folder: Path) -> Outcomes:
-    return computed(folder, "published", PUBLISHED)
-
-
-@pytest.fixture(scope="module")
-def idle(folder: Path) -> Outcomes:
-    return computed(folder, "idle", IDLE)
-
-
-@pytest.fixture(scope="module")
-def wheel(folder: Path) -> Outcomes:
-    return computed(folder, "wheel", WHEEL)
 
 
 def test_an_explorer_draws_every_stage_and_turns_each_at_its_speed(
@@ -72,11 +52,6 @@ def racked(driver: str = "pinion") -> Outcome:
     """A result that holds nothing but the teeth of a rack and pinion."""
     mesh, _ = RACK_FAMILY.build(RACK, 2)
     return drawn_teeth(mesh, RACK_FAMILY, driver, ["pinion", "rack"])
-
-
-@pytest.fixture(scope="module")
-def outside() -> Outcomes:
-    return {name: shown(**changes) for name, changes in OUTSIDE.items()}
 
 
 @pytest.fixture(

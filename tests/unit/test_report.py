@@ -4,7 +4,6 @@ import json
 import re
 from dataclasses import replace
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import pytest
 import xarray as xr
 from pages import decoded, payload
 from plotly.offline import get_plotlyjs
-from reported import IDLE, PUBLISHED, TITLE, WHEEL, Outcomes, Words, computed
+from reported import TITLE, Outcomes, Words
 from sound import quick_first
 
 from pitchpoint.core.doubts import stored
@@ -26,32 +25,6 @@ from pitchpoint.views.section import Paragraph, naming
 from pitchpoint.views.sections.cycle import _mean_friction
 from pitchpoint.views.sections.loss_map import map_panel
 from pitchpoint.views.sections.studies import study_panels
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("report")
-
-
-@pytest.fixture(scope="module")
-def published(folder: Path) -> Outcomes:
-    return computed(folder, "published", PUBLISHED)
-
-
-@pytest.fixture(scope="module")
-def page(published: Outcomes) -> str:
-    return report_page(published)
-
-
-@pytest.fixture(scope="module")
-def idle(folder: Path) -> Outcomes:
-    return computed(folder, "idle", IDLE)
-
-
-@pytest.fixture(scope="module")
-def wheel(folder: Path) -> Outcomes:
-    return computed(folder, "wheel", WHEEL)
-
 
 CHOSEN = {
     "length": "in",

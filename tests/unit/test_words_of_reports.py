@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from pages import payload
-from reported import IDLE, OUTSIDE, PUBLISHED, WHEEL, Outcomes, Words, computed, shown
+from reported import OUTSIDE, Outcomes, Words
 
 from pitchpoint.cases.built import ALONE
 from pitchpoint.core.doubts import as_doubt, stored
@@ -30,31 +30,6 @@ from pitchpoint.views.sections.sliding import specific_sliding
 from pitchpoint.views.sections.spread import spread_sentence
 from pitchpoint.views.sections.studies import _warnings as study_warnings
 from pitchpoint.views.sections.teeth import dimension_rows
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("report")
-
-
-@pytest.fixture(scope="module")
-def published(folder: Path) -> Outcomes:
-    return computed(folder, "published", PUBLISHED)
-
-
-@pytest.fixture(scope="module")
-def page(published: Outcomes) -> str:
-    return report_page(published)
-
-
-@pytest.fixture(scope="module")
-def idle(folder: Path) -> Outcomes:
-    return computed(folder, "idle", IDLE)
-
-
-@pytest.fixture(scope="module")
-def wheel(folder: Path) -> Outcomes:
-    return computed(folder, "wheel", WHEEL)
 
 
 def test_oil_laws_sharing_and_misses_stand_at_the_top(page: str) -> None:
@@ -138,12 +113,12 @@ def test_inputs_that_differ_are_shown_for_each_variant(page: str) -> None:
     assert keys == {"friction as_published", "averaging as_published", "physical"}
 
 
-def test_reopened_results_give_the_same_report(published: Outcomes, folder: Path) -> None:
+def test_reopened_results_give_the_same_report(published: Outcomes, report_folder: Path) -> None:
     """Beside those that the run itself gives: results of the bank are opened again too."""
-    new = run_case(folder / "published.toml", folder=folder / "published")
-    kept = open_outcomes(folder / "published")
-    write_report(kept, folder / "report.html")
-    assert (folder / "report.html").read_text("utf-8") == report_page(new)
+    new = run_case(report_folder / "published.toml", folder=report_folder / "published")
+    kept = open_outcomes(report_folder / "published")
+    write_report(kept, report_folder / "report.html")
+    assert (report_folder / "report.html").read_text("utf-8") == report_page(new)
     for name, one in new.items():
         told, again = (
             [(text, as_doubt(text).brief) for text in outcome.manifest["warnings"]]
@@ -151,7 +126,7 @@ def test_reopened_results_give_the_same_report(published: Outcomes, folder: Path
         )
         assert told == again
         assert any(text != brief for text, brief in again)
-    assert [path.name for path in folder.glob(".report*")] == []
+    assert [path.name for path in report_folder.glob(".report*")] == []
 
 
 @pytest.mark.whole
@@ -262,11 +237,6 @@ def test_an_interrupted_result_has_a_page(wheel: Outcomes, kept: tuple[str, ...]
     page = report_page({"default": Outcome(manifest, parts)})
     assert "its computation was interrupted" in page
     assert sorted(Words(page).plots) == sorted(payload(page)["figures"])
-
-
-@pytest.fixture(scope="module")
-def outside() -> Outcomes:
-    return {name: shown(**changes) for name, changes in OUTSIDE.items()}
 
 
 def test_letters_that_are_close_share_a_label(outside: Outcomes) -> None:

@@ -276,9 +276,8 @@ def _solved(
     changes = _written_out(task, combination, point)
     best, warnings = _ran(task, changes, columns, search.spread)
     if folder is not None and task.file.path is not None:
-        if (
-            task.base.own
-        ):  # no case file holds a law of one's own, least of all that of another design
+        # No case file holds a law of one's own, least of all that of another design.
+        if task.base.own:
             (folder / CASE).unlink(missing_ok=True)
         else:
             document = task.base.computed.document(**changes)
