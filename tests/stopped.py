@@ -5,9 +5,11 @@ from typing import Any
 
 import pytest
 
+from pitchpoint.analyses.analysis import Analysis
+
 
 def stopped_and_gone_on(
-    module: Any, run: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
+    analysis: Analysis, run: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
 ) -> tuple[Any, list[int]]:
     """What a run of films finds that was stopped in its second piece, and where each piece began."""
     begins: list[int] = []
@@ -18,8 +20,8 @@ def stopped_and_gone_on(
             raise KeyboardInterrupt
         return part(built, piece, progress)
 
-    part = module.film_part
-    monkeypatch.setattr(module, "film_part", stop)
+    part = analysis.compute
+    monkeypatch.setitem(vars(analysis), "compute", stop)
     with pytest.raises(KeyboardInterrupt):
         run()
     return run(), begins

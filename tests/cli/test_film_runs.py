@@ -160,7 +160,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     def run() -> Any:
         return running.run_case(case, folder=tmp_path)["default"].parts["film"]
 
-    again, begins = stopped_and_gone_on(solved, run, monkeypatch)
+    again, begins = stopped_and_gone_on(FILM, run, monkeypatch)
     assert begins == [0, 6, 6]
     for name in PHASES:
         assert np.array_equal(again[name], outcome.parts["film"][name], equal_nan=True)

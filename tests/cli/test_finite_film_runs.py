@@ -362,7 +362,7 @@ def test_a_run_that_was_stopped_goes_on_with_what_it_has(
     def run() -> Any:
         return running.run_case(case, folder=tmp_path)["default"].parts["finite_film"]
 
-    again, begins = stopped_and_gone_on(finite_film, run, monkeypatch)
+    again, begins = stopped_and_gone_on(FINITE_FILM, run, monkeypatch)
     assert begins[:3] == [0, 2, 2]
     for name in ("film_loss", "minimum_film", "field_pressure", "near_ends", "kept_at"):
         assert np.array_equal(again[name], outcome.parts["finite_film"][name], equal_nan=True)

@@ -27,12 +27,12 @@ import sys
 from collections import Counter
 
 from pitchpoint._jax import jax
-from pitchpoint.runs.run import run
+from pitchpoint.runs.run import run_case
 from pitchpoint.cases.study_tables import Study, Sweep
 
 told = Counter()
 jax.monitoring.register_event_listener(lambda event, **_: told.update([event]))
-run(sys.argv[1])
+run_case(sys.argv[1])
 cache = "/jax/compilation_cache/"
 first = [told[cache + name] for name in ("compile_requests_use_cache", "cache_hits", "cache_misses")]
 other = {
@@ -43,7 +43,7 @@ other = {
     "lubricant.name": "75W90-A",
 }
 sweep = Sweep(key="operation.temperature", start="50 degC", stop="70 degC", count=3)
-run(sys.argv[1], settings=other, studies={"warm": Study(sweep=sweep)})
+run_case(sys.argv[1], settings=other, studies={"warm": Study(sweep=sweep)})
 import pitchpoint
 assert pitchpoint.__file__.startswith(sys.argv[1].rpartition("/")[0]), pitchpoint.__file__
 print(*first, told[cache + "compile_requests_use_cache"] - first[0])
